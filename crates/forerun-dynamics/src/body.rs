@@ -1,0 +1,309 @@
+//! Bodies: what does not change from frame to frame unless a command says so.
+
+use std::fmt;
+
+use forerun_geometry::{Pose, Quat, Shape, Vec3};
+
+use crate::BodyState;
+
+/// Name of a body. Never used again after the body is removed; the order of ids is the canonical order of bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BodyId(pub u32);
+
+/// How a body moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// Moved by forces, impulses and contacts.
+    Dynamic,
+    /// Stays where it is.
+    Fixed,
+    /// Moves at its own velocity; nothing pushes it.
+    Kinematic,
+}
+
+/// What a surface does in contact. Of two materials the friction is the geometric mean and the restitution the larger.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Coefficient of kinetic friction, 0 or more. Default 0.5.
+    pub friction: f32,
+    /// Coefficient of static friction, at least `friction`. Default the same as `friction`.
+    pub static_friction: f32,
+    /// Coefficient of restitution, 0 to 1. Default 0.
+    pub restitution: f32,
+}
+
+impl Material {
+    /// A material with the same static and kinetic friction.
+    #[must_use]
+    pub const fn new(friction: f32, restitution: f32) -> Self {
+        Material { friction, static_friction: friction, restitution }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Material::new(0.5, 0.0)
+    }
+}
+
+/// A damped spring that pulls a point of a body to a point of the world: a hand that holds or drags.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// The held point in the body's own frame (that of its definition). Metres.
+    pub anchor: Vec3,
+    /// Where it is pulled to, in the world. Metres.
+    pub target: Vec3,
+    /// Natural frequency of the body on the spring. Hz, above 0.
+    pub frequency_hz: f32,
+    /// Damping ratio: 1 is critical. 0 or more.
+    pub damping_ratio: f32,
+}
+
+/// How a body is made. `BodyDef::new(shape)` gives a dynamic body at the origin, at rest, of density 1000.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyDef {
+    /// The shape, in the body's own frame.
+    pub shape: Shape,
+    /// Where the body's own frame is at first.
+    pub pose: Pose,
+    /// Velocity of the centre of mass. m/s.
+    pub velocity: Vec3,
+    /// Angular velocity in the world. rad/s.
+    pub angular_velocity: Vec3,
+    /// How it moves.
+    pub kind: BodyKind,
+    /// Surface.
+    pub material: Material,
+    /// Mass.
+    pub mass: Mass,
+    /// Factor on gravity for this body. Default 1.
+    pub gravity_scale: f32,
+    /// Constant external force at the centre of mass, in the world. N.
+    pub force: Vec3,
+    /// Constant external torque, in the world. N m.
+    pub torque: Vec3,
+}
+
+/// How heavy a body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mass {
+    /// From the volume of the shape. kg/m³, above 0.
+    Density(f32),
+    /// A total mass spread evenly over the shape. kg, above 0.
+    Total(f32),
+    /// Given in full: mass (kg), centre of mass and moments about it along the body's own axes (kg m²).
+    Given {
+        /// Mass. kg, above 0.
+        mass: f32,
+        /// Centre of mass in the body's own frame. Metres.
+        centre: Vec3,
+        /// Principal moments about the centre of mass. kg m², above 0.
+        inertia: Vec3,
+        /// Rotation from the principal axes to the body's own frame.
+        principal_rotation: Quat,
+    },
+}
+
+impl BodyDef {
+    /// A dynamic body of density 1000 kg/m³ at the origin, at rest.
+    #[must_use]
+    pub fn new(shape: Shape) -> Self {
+        BodyDef {
+            shape,
+            pose: Pose::IDENTITY,
+            velocity: Vec3::ZERO,
+            angular_velocity: Vec3::ZERO,
+            kind: BodyKind::Dynamic,
+            material: Material::default(),
+            mass: Mass::Density(1000.0),
+            gravity_scale: 1.0,
+            force: Vec3::ZERO,
+            torque: Vec3::ZERO,
+        }
+    }
+
+    /// A body that stays where it is.
+    #[must_use]
+    pub fn fixed(shape: Shape) -> Self {
+        BodyDef { kind: BodyKind::Fixed, ..BodyDef::new(shape) }
+    }
+
+    /// The same at a position (metres).
+    #[must_use]
+    pub fn at(mut self, position: Vec3) -> Self {
+        self.pose.position = position;
+        self
+    }
+}
+
+/// Why a body cannot be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyError {
+    /// The field at fault, as in [`BodyDef`].
+    pub field: &'static str,
+    /// What is wrong and what is allowed.
+    pub message: String,
+}
+
+impl fmt::Display for BodyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.field, self.message)
+    }
+}
+
+impl std::error::Error for BodyError {}
+
+/// A body as the step sees it: principal frame, inverse masses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// The shape.
+    pub shape: Shape,
+    /// The body's own frame (that of its shape and definition) in the principal frame of its states.
+    pub frame: Pose,
+    /// How it moves.
+    pub kind: BodyKind,
+    /// Surface.
+    pub material: Material,
+    /// 1/kg; 0 unless dynamic.
+    pub inverse_mass: f32,
+    /// 1/(kg m²) along the principal axes; 0 unless dynamic.
+    pub inverse_inertia: Vec3,
+    /// Factor on gravity.
+    pub gravity_scale: f32,
+    /// Constant external force at the centre of mass. N.
+    pub force: Vec3,
+    /// Constant external torque. N m.
+    pub torque: Vec3,
+    /// The spring that holds the body, if any.
+    pub spring: Option<Spring>,
+    /// Distance from the centre of mass to the farthest point of the shape. Metres; infinite for half-spaces.
+    pub radius: f32,
+    /// Half the smallest thickness of the shape. Metres.
+    pub half_thickness: f32,
+}
+
+impl Body {
+    /// The body and its first state.
+    ///
+    /// # Errors
+    /// When a number of the definition is not finite or out of its range.
+    pub fn new(def: &BodyDef) -> Result<(Body, BodyState), BodyError> {
+        validate(def)?;
+        let (mass, centre, inertia, principal) = match def.mass {
+            Mass::Given { mass, centre, inertia, principal_rotation } => {
+                (mass, centre, inertia, principal_rotation)
+            }
+            Mass::Density(density) => {
+                let m = def.shape.mass_properties(density);
+                (m.mass, m.centre, m.principal_inertia, m.principal_rotation)
+            }
+            Mass::Total(total) => {
+                let m = def.shape.mass_properties(1.0);
+                let scale = if m.mass > 0.0 { total / m.mass } else { 0.0 };
+                (total, m.centre, m.principal_inertia * scale, m.principal_rotation)
+            }
+        };
+        let dynamic = def.kind == BodyKind::Dynamic;
+        if dynamic && !(mass > 0.0 && mass.is_finite() && inertia.min_element() > 0.0 && inertia.is_finite())
+        {
+            return Err(BodyError {
+                field: "shape",
+                message: format!(
+                    "a dynamic body needs a mass and inertia above 0, this has {mass} kg and {inertia} kg m²"
+                ),
+            });
+        }
+        let principal_frame = Pose::new(centre, principal);
+        let body = Body {
+            frame: principal_frame.inverse(),
+            kind: def.kind,
+            material: def.material,
+            inverse_mass: if dynamic { 1.0 / mass } else { 0.0 },
+            inverse_inertia: if dynamic { inertia.recip() } else { Vec3::ZERO },
+            gravity_scale: def.gravity_scale,
+            force: def.force,
+            torque: def.torque,
+            spring: None,
+            radius: def.shape.radius_about(centre),
+            half_thickness: def.shape.half_thickness(),
+            shape: def.shape.clone(),
+        };
+        let state = body.state_at(&def.pose, def.velocity, def.angular_velocity);
+        Ok((body, state))
+    }
+
+    /// The state of the body when its own frame is at `pose`, moving as given, not at rest.
+    #[must_use]
+    pub fn state_at(&self, pose: &Pose, velocity: Vec3, angular_velocity: Vec3) -> BodyState {
+        let principal = *pose * self.frame.inverse();
+        let (velocity, angular_velocity) = if self.kind == BodyKind::Fixed {
+            (Vec3::ZERO, Vec3::ZERO)
+        } else {
+            (velocity, angular_velocity)
+        };
+        BodyState {
+            position: principal.position,
+            rotation: principal.rotation.normalize(),
+            velocity,
+            angular_velocity,
+            rest: 0,
+        }
+        .canonical()
+    }
+
+    /// Where the body's own frame is in a state.
+    #[must_use]
+    pub fn own_pose(&self, state: &BodyState) -> Pose {
+        state.pose() * self.frame
+    }
+
+    /// Whether forces and contacts move it.
+    #[must_use]
+    pub fn is_dynamic(&self) -> bool {
+        self.kind == BodyKind::Dynamic
+    }
+}
+
+fn validate(def: &BodyDef) -> Result<(), BodyError> {
+    let fail = |field, message: String| Err(BodyError { field, message });
+    let vectors = [
+        ("position", def.pose.position),
+        ("velocity", def.velocity),
+        ("angular_velocity", def.angular_velocity),
+        ("force", def.force),
+        ("torque", def.torque),
+    ];
+    for (field, v) in vectors {
+        if !v.is_finite() {
+            return fail(field, format!("must be finite numbers, is {v}"));
+        }
+    }
+    let q = def.pose.rotation;
+    if !(q.is_finite() && (q.length_squared() - 1.0).abs() < 1e-3) {
+        return fail("rotation", format!("must be a unit quaternion (x, y, z, w), is {q}"));
+    }
+    let m = def.material;
+    if !(m.friction >= 0.0 && m.friction.is_finite()) {
+        return fail("friction", format!("must be 0 or more, is {}", m.friction));
+    }
+    if !(m.static_friction >= m.friction && m.static_friction.is_finite()) {
+        return fail(
+            "static_friction",
+            format!("must be at least friction ({}), is {}", m.friction, m.static_friction),
+        );
+    }
+    if !(0.0..=1.0).contains(&m.restitution) {
+        return fail("restitution", format!("must be from 0 to 1, is {}", m.restitution));
+    }
+    if !def.gravity_scale.is_finite() {
+        return fail("gravity_scale", format!("must be a finite number, is {}", def.gravity_scale));
+    }
+    let (field, mass) = match def.mass {
+        Mass::Density(x) => ("density", x),
+        Mass::Total(x) | Mass::Given { mass: x, .. } => ("mass", x),
+    };
+    if !(mass > 0.0 && mass.is_finite()) {
+        return fail(field, format!("must be above 0, is {mass}"));
+    }
+    Ok(())
+}

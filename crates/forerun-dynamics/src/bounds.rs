@@ -1,0 +1,66 @@
+//! Swept bounds: where a body may be during the next frame.
+//!
+//! Promise: a bound depends on the body, its state and the environment alone, never on what the solver then does, so that
+//! "nobody else comes near" can be checked before anything is solved.
+
+use forerun_geometry::{Aabb, Motion, Pose, Vec3};
+
+use crate::{Body, BodyKind, BodyState, Environment};
+
+/// How much further than its velocity says a body is expected to move.
+const MOTION_FACTOR: f32 = 1.2;
+
+/// The box that holds the body during the whole frame, contact margin included.
+#[must_use]
+pub fn swept_bound(body: &Body, state: &BodyState, environment: &Environment) -> Aabb {
+    let now = body.shape.aabb(&body.own_pose(state));
+    let reach = 0.5 * environment.settings.contact_margin_m + spin_reach(body, state, environment);
+    let step = frame_motion(body, state, environment) * MOTION_FACTOR;
+    Aabb {
+        min: now.min + step.min(Vec3::ZERO) - Vec3::splat(reach),
+        max: now.max + step.max(Vec3::ZERO) + Vec3::splat(reach),
+    }
+}
+
+/// Displacement of the centre of mass in the frame, if nothing is in the way. Metres.
+#[must_use]
+pub fn frame_motion(body: &Body, state: &BodyState, environment: &Environment) -> Vec3 {
+    let dt = environment.settings.frame_seconds;
+    match body.kind {
+        BodyKind::Fixed => Vec3::ZERO,
+        BodyKind::Kinematic => state.velocity * dt,
+        BodyKind::Dynamic => {
+            let acceleration = environment.gravity * body.gravity_scale + body.force * body.inverse_mass;
+            (state.velocity + acceleration * dt) * dt
+        }
+    }
+}
+
+/// How far the surface may move by rotation in the frame. Metres.
+fn spin_reach(body: &Body, state: &BodyState, environment: &Environment) -> f32 {
+    if body.kind == BodyKind::Fixed || !body.radius.is_finite() {
+        return 0.0;
+    }
+    // No more than a full turn's worth: every point stays within the radius of the centre of mass.
+    let turn = state.angular_velocity.length() * environment.settings.frame_seconds * MOTION_FACTOR;
+    body.radius * turn.min(2.0)
+}
+
+/// The expected motion as the narrow phase wants it.
+#[must_use]
+pub fn motion(body: &Body, state: &BodyState, environment: &Environment) -> Motion {
+    let dt = environment.settings.frame_seconds;
+    let angular = if body.kind == BodyKind::Fixed { Vec3::ZERO } else { state.angular_velocity * dt };
+    Motion { linear: frame_motion(body, state, environment), angular, about: state.position }
+}
+
+/// Contacts of a pair are found this far ahead. Metres.
+#[must_use]
+pub fn pair_margin(first: &(Motion, f32), second: &(Motion, f32), environment: &Environment) -> f32 {
+    let approach = (first.0.linear - second.0.linear).length();
+    let spin = |(motion, radius): &(Motion, f32)| {
+        let turn = motion.angular.length().min(2.0);
+        if turn > 0.0 { turn * radius } else { 0.0 }
+    };
+    environment.settings.contact_margin_m.max(MOTION_FACTOR * (approach + spin(first) + spin(second)))
+}

@@ -1,0 +1,24 @@
+//! The rigid-body step, after Guendelman, Bridson, Fedkiw: *Nonconvex Rigid Bodies with Stacking* (2003) and
+//! section 2.4 of the dissertation.
+//!
+//! *Architecture invariant:* the step is memoryless. The next states of an island are a pure function of its bodies, their
+//! states, and the environment. No cache outlives a step; the same input gives the same bits for any thread count.
+//!
+//! *Architecture invariant:* the step cannot fail. It reports ([`StepReport`]); it does not return `Result`.
+
+pub mod body;
+pub mod bounds;
+pub mod broad_phase;
+pub mod narrow_phase;
+pub mod settings;
+pub mod stage;
+pub mod state;
+pub mod step;
+pub mod world;
+
+pub use body::{Body, BodyDef, BodyError, BodyId, BodyKind, Mass, Material, Spring};
+pub use settings::{Environment, StepSettings};
+pub use stage::{Observer, Stage, Unobserved};
+pub use state::BodyState;
+pub use step::{Group, Member, StepReport};
+pub use world::World;

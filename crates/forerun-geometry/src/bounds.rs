@@ -1,0 +1,43 @@
+//! Bounding volumes and their overlap tests (dissertation, section 2.3.1).
+
+use glam::Vec3;
+
+/// Axis-aligned bounding box. Touching boxes overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Corner with the smallest coordinates. Metres.
+    pub min: Vec3,
+    /// Corner with the largest coordinates. Metres.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The box around a centre with the given half extents (metres, not negative).
+    #[must_use]
+    pub fn from_centre(centre: Vec3, half_extents: Vec3) -> Self {
+        Aabb { min: centre - half_extents, max: centre + half_extents }
+    }
+
+    /// Whether the two boxes share a point.
+    #[must_use]
+    pub fn overlaps(&self, other: &Aabb) -> bool {
+        self.min.x <= other.max.x
+            && other.min.x <= self.max.x
+            && self.min.y <= other.max.y
+            && other.min.y <= self.max.y
+            && self.min.z <= other.max.z
+            && other.min.z <= self.max.z
+    }
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn union(&self, other: &Aabb) -> Aabb {
+        Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The box grown on every side by `margin` metres.
+    #[must_use]
+    pub fn grown(&self, margin: f32) -> Aabb {
+        Aabb { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
+    }
+}

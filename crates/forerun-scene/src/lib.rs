@@ -1,0 +1,1 @@
+//! Scene files (TOML, JSON) and the built-in scenes.

@@ -1,0 +1,1 @@
+//! Simulation states over time: tracks, commands, incremental re-simulation, sampling.

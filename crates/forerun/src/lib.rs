@@ -1,0 +1,1 @@
+//! Rigid-body physics that runs ahead of the display.
