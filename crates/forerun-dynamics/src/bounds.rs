@@ -3,7 +3,7 @@
 //! Promise: a bound depends on the body, its state and the environment alone, never on what the solver then does, so that
 //! "nobody else comes near" can be checked before anything is solved.
 
-use forerun_geometry::{Aabb, Motion, Pose, Vec3};
+use forerun_geometry::{Aabb, Motion, Vec3};
 
 use crate::{Body, BodyKind, BodyState, Environment};
 

@@ -1,7 +1,17 @@
 //! Shapes: what a body looks like to the physics.
 
+use std::sync::Arc;
+
 use crate::{Aabb, MassProperties, Pose, Vec3};
 use glam::Quat;
+
+mod compound;
+mod hull;
+mod mesh;
+
+pub use compound::Compound;
+pub use hull::{Hull, HullEdge, HullFace};
+pub use mesh::Mesh;
 
 /// A shape in a frame of its own. Cloning is cheap: large shapes are shared.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +20,18 @@ pub enum Shape {
     Sphere(Sphere),
     /// A box about the origin, by half extents.
     Cuboid(Cuboid),
+    /// All points within a radius of a segment along y.
+    Capsule(Capsule),
+    /// A solid cylinder along y.
+    Cylinder(Cylinder),
+    /// A convex polyhedron.
+    Hull(Arc<Hull>),
+    /// All points with y at or below 0: the ground. Never dynamic.
+    HalfSpace,
+    /// Several convex shapes held rigidly together.
+    Compound(Arc<Compound>),
+    /// A closed triangle mesh, convex or not.
+    Mesh(Arc<Mesh>),
 }
 
 /// A ball about the origin.
@@ -24,6 +46,24 @@ pub struct Sphere {
 pub struct Cuboid {
     /// Half the size along x, y and z. Metres, above 0.
     pub half_extents: Vec3,
+}
+
+/// All points within `radius` of the segment from (0, -half_height, 0) to (0, half_height, 0).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule {
+    /// Half the length of the inner segment. Metres, 0 or more.
+    pub half_height: f32,
+    /// Radius. Metres, above 0.
+    pub radius: f32,
+}
+
+/// A solid cylinder about the origin, along y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// Half the height. Metres, above 0.
+    pub half_height: f32,
+    /// Radius. Metres, above 0.
+    pub radius: f32,
 }
 
 impl Shape {
@@ -41,6 +81,7 @@ impl Shape {
                 let q = h * h;
                 (mass, Vec3::new(q.y + q.z, q.x + q.z, q.x + q.y) * (mass / 3.0))
             }
+            _ => (0.0, Vec3::ZERO),
         };
         MassProperties { mass, centre: Vec3::ZERO, principal_inertia, principal_rotation: Quat::IDENTITY }
     }
@@ -56,6 +97,7 @@ impl Shape {
                 let e = m.x_axis.abs() * h.x + m.y_axis.abs() * h.y + m.z_axis.abs() * h.z;
                 Aabb::from_centre(pose.position, e)
             }
+            _ => Aabb::from_centre(pose.position, Vec3::splat(f32::INFINITY)),
         }
     }
 
@@ -65,6 +107,7 @@ impl Shape {
         match self {
             Shape::Sphere(s) => centre.length() + s.radius,
             Shape::Cuboid(c) => (centre.abs() + c.half_extents).length(),
+            _ => f32::INFINITY,
         }
     }
 
@@ -74,6 +117,7 @@ impl Shape {
         match self {
             Shape::Sphere(s) => s.radius,
             Shape::Cuboid(c) => c.half_extents.min_element(),
+            _ => f32::INFINITY,
         }
     }
 }

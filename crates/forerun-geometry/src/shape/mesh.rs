@@ -1,0 +1,12 @@
+//! Mesh: a closed triangle mesh, convex or not.
+
+use crate::Vec3;
+
+/// A closed triangle mesh, wound counter-clockwise seen from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Vertices. Metres.
+    pub vertices: Vec<Vec3>,
+    /// Vertex indices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
