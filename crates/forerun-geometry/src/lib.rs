@@ -9,6 +9,7 @@ pub mod bounds;
 pub mod contact;
 pub mod mass;
 pub mod pose;
+pub mod sdf;
 pub mod shape;
 
 pub use bounds::Aabb;

@@ -5,6 +5,8 @@
 
 use crate::{Pose, Shape, Vec3};
 
+pub mod mesh;
+
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {

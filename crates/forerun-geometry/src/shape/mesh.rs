@@ -1,6 +1,7 @@
 //! Mesh: a closed triangle mesh, convex or not.
 
 use crate::Vec3;
+use crate::sdf::MeshCollider;
 
 /// A closed triangle mesh, wound counter-clockwise seen from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,4 +10,6 @@ pub struct Mesh {
     pub vertices: Vec<Vec3>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// What contact knows of it.
+    pub collider: MeshCollider,
 }
