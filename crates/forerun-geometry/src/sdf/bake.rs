@@ -19,31 +19,127 @@ const THINNER_PART: f64 = 0.05;
 /// Triangles at which the thickness is measured, evenly spread over the list.
 const THICKNESS_PROBES: usize = 4096;
 
-/// The field of a closed surface: exact distances to the triangles at the nodes, signs by pseudo-normals.
+/// Cells along the side of a block that is either computed node by node or, far from the surface, interpolated.
+const BLOCK: usize = 4;
+/// Nodes nearer to the surface than this many cells are exact. Farther ones only serve to cull.
+const EXACT_CELLS: f32 = 4.0;
+
+/// The field of a closed surface: exact distances to the triangles at the nodes near it, signs by pseudo-normals.
 pub(crate) fn bake(tree: &TriangleTree, half_thickness: f32) -> Field {
     let bounds = bounds_of(&tree.topology().vertices);
     let cell = cell_size(&bounds, half_thickness / CELLS_PER_HALF_THICKNESS);
     let size = grid_size(&bounds, cell).map(|n| n as usize);
     let cells = Vec3::from_array(size.map(|n| (n - 1) as f32));
     let origin = (bounds.min + bounds.max - cells * cell) * 0.5;
-    let mut distances = Vec::with_capacity(size.iter().product());
-    let mut row_start: Option<Nearest> = None;
-    for z in 0..size[2] {
-        for y in 0..size[1] {
-            let mut guess = row_start;
-            for x in 0..size[0] {
-                let node = origin.as_dvec3() + DVec3::new(x as f64, y as f64, z as f64) * f64::from(cell);
-                // A closed surface has triangles, so there is a nearest one.
-                let Some(nearest) = tree.nearest(node, guess.as_ref()) else { continue };
-                distances.push(tree.signed(node, &nearest).distance as f32);
-                guess = Some(nearest);
-                if x == 0 {
-                    row_start = guess;
+    let distances = vec![f32::NAN; size.iter().product()];
+    let mut baker = Baker { tree, origin, cell, size, distances, guess: None };
+    let blocks = baker.blocks();
+    for block in &blocks {
+        for node in block.corners() {
+            baker.measure(node);
+        }
+    }
+    let (far, near): (Vec<Block>, Vec<Block>) = blocks.iter().partition(|block| baker.is_far(block));
+    for block in near {
+        block.nodes().for_each(|node| baker.measure(node));
+    }
+    for block in far {
+        block.nodes().for_each(|node| baker.interpolate(&block, node));
+    }
+    Field::from_distances(origin, cell, size, &baker.distances)
+}
+
+/// A field in the making.
+struct Baker<'a> {
+    tree: &'a TriangleTree,
+    origin: Vec3,
+    cell: f32,
+    size: [usize; 3],
+    /// Distances so far; not a number where not known yet.
+    distances: Vec<f32>,
+    /// The last answer: the next node is close by.
+    guess: Option<Nearest>,
+}
+
+/// The nodes from `low` to `high`, both included.
+#[derive(Clone, Copy)]
+struct Block {
+    low: [usize; 3],
+    high: [usize; 3],
+}
+
+impl Block {
+    fn corners(self) -> impl Iterator<Item = [usize; 3]> {
+        (0..8).map(move |k| {
+            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] })
+        })
+    }
+
+    fn nodes(self) -> impl Iterator<Item = [usize; 3]> {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.low[axis]..=self.high[axis]);
+        z.flat_map(move |z| {
+            let x = x.clone();
+            y.clone().flat_map(move |y| x.clone().map(move |x| [x, y, z]))
+        })
+    }
+}
+
+impl Baker<'_> {
+    /// All blocks; neighbours share the nodes between them.
+    fn blocks(&self) -> Vec<Block> {
+        let [nx, ny, nz] = self.size.map(|n| (0..n - 1).step_by(BLOCK));
+        let mut blocks = Vec::new();
+        for z in nz {
+            for y in ny.clone() {
+                for x in nx.clone() {
+                    let low = [x, y, z];
+                    let high = [0, 1, 2].map(|axis| (low[axis] + BLOCK).min(self.size[axis] - 1));
+                    blocks.push(Block { low, high });
                 }
             }
         }
+        blocks
     }
-    Field::from_distances(origin, cell, size, &distances)
+
+    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.size[1] + y) * self.size[0] + x
+    }
+
+    /// Whether no node of a block, its corners known, can be so near that it must be exact.
+    fn is_far(&self, block: &Block) -> bool {
+        let half_diagonal = 0.5 * BLOCK as f32 * 3.0_f32.sqrt();
+        let enough = (EXACT_CELLS + half_diagonal) * self.cell;
+        block.corners().all(|node| self.distances[self.index(node)].abs() > enough)
+    }
+
+    fn measure(&mut self, node: [usize; 3]) {
+        let index = self.index(node);
+        if !self.distances[index].is_nan() {
+            return;
+        }
+        let at = DVec3::from_array(node.map(|i| i as f64)) * f64::from(self.cell) + self.origin.as_dvec3();
+        self.guess = self.tree.nearest(at, self.guess.as_ref());
+        // A surface has triangles, so there is a nearest one.
+        self.distances[index] =
+            self.guess.map_or(0.0, |nearest| self.tree.signed(at, &nearest).distance as f32);
+    }
+
+    /// Trilinear interpolation from the corners of the block.
+    fn interpolate(&mut self, block: &Block, node: [usize; 3]) {
+        let index = self.index(node);
+        if !self.distances[index].is_nan() {
+            return;
+        }
+        let part = [0, 1, 2]
+            .map(|axis| (node[axis] - block.low[axis]) as f32 / (block.high[axis] - block.low[axis]) as f32);
+        let mut sum = 0.0;
+        for (k, corner) in block.corners().enumerate() {
+            let weights =
+                [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { 1.0 - part[axis] } else { part[axis] });
+            sum += weights[0] * weights[1] * weights[2] * self.distances[self.index(corner)];
+        }
+        self.distances[index] = sum;
+    }
 }
 
 /// Half the thickness of the thinnest part of a closed surface that is more than a twentieth of its area: measured
