@@ -13,8 +13,10 @@ pub struct Field {
     origin: Vec3,
     /// Distance between neighbouring nodes. Metres.
     cell: f32,
-    /// Number of nodes along x, y and z, 2 or more each.
+    /// Number of nodes along x, y and z, 3 or more each; fewer than 2^23 in all.
     size: [usize; 3],
+    /// Number of cells along x, y and z, ready to compute with.
+    cells: Vec3,
     /// Metres per unit of `nodes`.
     scale: f32,
     /// Distances at the nodes, x fastest, then y, then z.
@@ -24,7 +26,7 @@ pub struct Field {
 /// Where eight points are in the grid.
 struct Place {
     /// Index of the lowest node of the cell.
-    base: [usize; WIDTH],
+    base: [u32; WIDTH],
     /// Position in the cell, 0 to 1.
     fraction: Lanes3,
     /// From the point of the grid's box nearest to the point, to the point: zero inside. Metres.
@@ -42,7 +44,7 @@ impl Field {
         let largest = corrected.iter().fold(0.0_f32, |m, d| m.max(d.abs()));
         let scale = if largest > 0.0 { largest / f32::from(i16::MAX) } else { 1.0 };
         let nodes = corrected.iter().map(|d| (d / scale).round() as i16).collect();
-        Field { origin, cell, size, scale, nodes }
+        Field { origin, cell, size, cells: Vec3::from_array(size.map(|n| (n - 1) as f32)), scale, nodes }
     }
 
     /// Distance between neighbouring nodes. Metres.
@@ -54,8 +56,7 @@ impl Field {
     /// The box that the grid covers.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        let cells = Vec3::from_array(self.size.map(|n| (n - 1) as f32));
-        Aabb { min: self.origin, max: self.origin + cells * self.cell }
+        Aabb { min: self.origin, max: self.origin + self.cells * self.cell }
     }
 
     /// Whether a point is inside the box that the grid covers.
@@ -142,46 +143,51 @@ impl Field {
 
     #[inline(always)]
     fn place(&self, points: Lanes3) -> Place {
-        let (nx, ny) = (self.size[0], self.size[1]);
-        let (x, fx, ox) = self.place_along(0, points.x);
-        let (y, fy, oy) = self.place_along(1, points.y);
-        let (z, fz, oz) = self.place_along(2, points.z);
-        let mut base = [0; WIDTH];
+        let inverse_cell = 1.0 / self.cell;
+        let (x, fx, ox) = self.place_along(0, points.x, inverse_cell);
+        let (y, fy, oy) = self.place_along(1, points.y, inverse_cell);
+        let (z, fz, oz) = self.place_along(2, points.z, inverse_cell);
+        // Whole numbers below 2^23 are exact, and adding 2^23 puts them into the lowest bits.
+        let base = (z * (self.cells.y + 1.0) + y) * (self.cells.x + 1.0) + x + Lanes::splat(8_388_608.0);
+        let mut bits = [0; WIDTH];
         for i in 0..WIDTH {
-            base[i] = (z[i] as usize * ny + y[i] as usize) * nx + x[i] as usize;
+            bits[i] = base.0[i].to_bits() & 0x007f_ffff;
         }
-        Place { base, fraction: Lanes3 { x: fx, y: fy, z: fz }, offset: Lanes3 { x: ox, y: oy, z: oz } }
+        Place { base: bits, fraction: Lanes3 { x: fx, y: fy, z: fz }, offset: Lanes3 { x: ox, y: oy, z: oz } }
     }
 
+    /// Index of the cell along an axis, position in the cell, and offset from the grid's box.
     #[inline(always)]
-    fn place_along(&self, axis: usize, p: Lanes) -> ([i32; WIDTH], Lanes, Lanes) {
-        let cells = (self.size[axis] - 1) as f32;
-        let u = (p - Lanes::splat(self.origin[axis])) * (1.0 / self.cell);
+    fn place_along(&self, axis: usize, p: Lanes, inverse_cell: f32) -> (Lanes, Lanes, Lanes) {
+        /// Adding and subtracting 1.5 times 2^23 rounds to the nearest whole number.
+        const ROUND: f32 = 12_582_912.0;
+        let cells = self.cells[axis];
+        let u = (p - Lanes::splat(self.origin[axis])) * inverse_cell;
         let inside = u.max(Lanes::ZERO).min(Lanes::splat(cells));
-        let offset = (u - inside) * self.cell;
-        let mut index = [0; WIDTH];
-        let mut fraction = [0.0; WIDTH];
-        for i in 0..WIDTH {
-            // The last node belongs to the last cell, at fraction 1.
-            index[i] = (inside.0[i].min(cells - 1.0)) as i32;
-            fraction[i] = inside.0[i] - index[i] as f32;
-        }
-        (index, Lanes(fraction), offset)
+        // A node may end up at fraction 1 of the cell below as well as at fraction 0 of its own: the value is the same.
+        let index = inside.map(|u| (u - 0.5 + ROUND) - ROUND).min(Lanes::splat(cells - 1.0));
+        (index, inside - index, (u - inside) * self.cell)
     }
 
     /// Values at the corners of eight cells: x changes fastest, then y, then z.
     #[inline(always)]
-    fn corners(&self, base: &[usize; WIDTH]) -> [Lanes; 8] {
+    fn corners(&self, base: &[u32; WIDTH]) -> [Lanes; 8] {
         let (row, layer) = (self.size[0], self.size[0] * self.size[1]);
         let mut values = [[0_i32; WIDTH]; 8];
         for i in 0..WIDTH {
-            let cell = &self.nodes[base[i]..base[i] + layer + row + 2];
+            let cell = &self.nodes[base[i] as usize..][..layer + row + 2];
             let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
-            for (k, corner) in corners.into_iter().enumerate() {
-                values[k][i] = i32::from(cell[corner]);
+            for k in 0..8 {
+                values[k][i] = i32::from(cell[corners[k]]);
             }
         }
-        values.map(|lane| Lanes(lane.map(|v| v as f32)))
+        let mut corners = [Lanes::ZERO; 8];
+        for k in 0..8 {
+            for i in 0..WIDTH {
+                corners[k].0[i] = values[k][i] as f32;
+            }
+        }
+        corners
     }
 }
 
