@@ -273,3 +273,63 @@ fn no_pose_gives_a_number_that_is_none() {
         assert!(contact(&nowhere, &at(other, Vec3::ZERO)).is_empty());
     }
 }
+
+/// A hilly sheet, open, that faces up: squares of a metre, cut in two.
+fn terrain(height: impl Fn(f32, f32) -> f32) -> Shape {
+    let n = 8_u32;
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    for z in 0..=n {
+        for x in 0..=n {
+            let (px, pz) = (x as f32 - 4.0, z as f32 - 4.0);
+            vertices.push(Vec3::new(px, height(px, pz), pz));
+            if x < n && z < n {
+                let [a, b, c, d] = [0, 1, n + 2, n + 1].map(|k| z * (n + 1) + x + k);
+                triangles.extend([[a, d, c], [a, c, b]]);
+            }
+        }
+    }
+    shape((vertices, triangles))
+}
+
+#[test]
+fn an_open_sheet_holds_shapes_on_its_front_only() {
+    let flat = terrain(|_, _| 0.0);
+    let half_extents = Vec3::new(0.3, 0.2, 0.1);
+    let shapes = [
+        ("sphere", Shape::Sphere(Sphere { radius: 0.2 }), 1),
+        ("box", Shape::Cuboid(Cuboid { half_extents }), 4),
+        ("mesh box", shape(meshes::cuboid(half_extents)), 4),
+        ("cylinder", Shape::Cylinder(Cylinder { half_height: 0.2, radius: 0.3 }), 4),
+    ];
+    for (name, shape, fewest) in shapes {
+        for depth in [-0.01, 0.0, 0.02] {
+            let upper = at(&shape, Vec3::new(0.13, 0.2 - depth, 0.31));
+            let points = all_points(&contact(&at(&flat, Vec3::ZERO), &upper));
+            assert!(points.len() >= fewest, "{name}: {} points", points.len());
+            for p in &points {
+                assert!((p.separation + depth).abs() < 1e-4, "{name}: {} at {depth}", p.separation);
+                assert!(p.normal.y > 0.999, "{name}: {}", p.normal);
+            }
+        }
+        let below = at(&shape, Vec3::new(0.13, -3.0, 0.31));
+        assert!(contact(&at(&flat, Vec3::ZERO), &below).is_empty(), "{name} far below the sheet");
+        let beside = at(&shape, Vec3::new(4.4, -0.05, 0.31));
+        assert!(contact(&at(&flat, Vec3::ZERO), &beside).is_empty(), "{name} beside the sheet");
+    }
+}
+
+#[test]
+fn a_box_rests_on_the_ridge_of_a_sheet() {
+    // A ridge along x whose vertices are a metre apart; the box lies between two of them.
+    let ridge = terrain(|_, z| -0.5 * z.abs());
+    let slab = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.4, 0.1, 0.4) });
+    let found = contact(&at(&ridge, Vec3::ZERO), &at(&slab, Vec3::new(0.5, 0.09, 0.0)));
+    assert!((smallest_separation(&found) + 0.01).abs() < 1e-3, "{}", smallest_separation(&found));
+    let points = all_points(&found);
+    let spread =
+        points.iter().map(|p| p.position.x).fold((9.0_f32, -9.0_f32), |(a, b), x| (a.min(x), b.max(x)));
+    assert!(spread.1 - spread.0 > 0.4, "points from x = {} to {}", spread.0, spread.1);
+    // Points of the box's edges that are below the ridge see its slopes.
+    assert!(points.iter().all(|p| p.normal.y > 0.85));
+}

@@ -75,6 +75,8 @@ impl std::error::Error for MeshDefect {}
 
 /// Most points along edges; longer spacings where there would be more.
 const EDGE_SAMPLES_MAX: f32 = 16_384.0;
+/// Points along an edge of middling length of an open mesh, whose thickness says nothing.
+const OPEN_EDGE_PARTS: f32 = 4.0;
 
 impl MeshCollider {
     /// The collider of triangles (vertex indices, counter-clockwise seen from outside) of vertices (metres).
@@ -103,7 +105,7 @@ impl MeshCollider {
         let tree = TriangleTree::new(topology);
         let half_thickness = if closed { bake::half_thickness(&tree) } else { 0.0 };
         let field = closed.then(|| bake::bake(&tree, half_thickness));
-        let samples = Samples::new(sample_points(tree.topology(), 2.0 * half_thickness));
+        let samples = Samples::new(sample_points(tree.topology(), closed.then_some(2.0 * half_thickness)));
         let radius = vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
         Ok(MeshCollider { field, samples, tree, half_thickness, radius })
     }
@@ -121,32 +123,31 @@ impl MeshCollider {
     }
 }
 
-/// The vertices that triangles use, and points along creases at most `spacing` apart (any for 0): the crossing edges
-/// of two frames have no vertex near each other.
-fn sample_points(topology: &Topology, spacing: f32) -> Vec<Vec3> {
+/// The vertices that triangles use, and points along ridges and boundaries no further apart than the thickness (of an
+/// open mesh, which has none, a quarter of the mean length): where the edges of two frames cross, no vertex is near.
+fn sample_points(topology: &Topology, thickness: Option<f32>) -> Vec<Vec3> {
     let mut used = vec![false; topology.vertices.len()];
     for triangle in &topology.triangles {
         for v in triangle.corners {
             used[v as usize] = true;
         }
     }
-    let ends = |edge: &[u32; 2]| edge.map(|v| topology.vertices[v as usize]);
-    let creases: Vec<[Vec3; 2]> = topology
+    let mut points: Vec<Vec3> =
+        topology.vertices.iter().zip(&used).filter(|(_, used)| **used).map(|(v, _)| *v).collect();
+    let sharp: Vec<[Vec3; 2]> = topology
         .edges
         .iter()
         .zip(&topology.edge_kinds)
-        .filter(|(_, kind)| **kind == EdgeKind::Crease)
-        .map(|(edge, _)| ends(edge))
+        .filter(|(_, kind)| matches!(kind, EdgeKind::Ridge | EdgeKind::Boundary))
+        .map(|(edge, _)| edge.map(|v| topology.vertices[v as usize]))
         .collect();
-    let mut points: Vec<Vec3> =
-        topology.vertices.iter().zip(&used).filter(|(_, used)| **used).map(|(v, _)| *v).collect();
-    if spacing > 0.0 {
-        let total = creases.iter().map(|[a, b]| a.distance(*b)).sum::<f32>();
-        let spacing = spacing.max(total / EDGE_SAMPLES_MAX);
-        for [a, b] in creases {
-            let parts = (a.distance(b) / spacing).ceil() as u32;
-            points.extend((1..parts).map(|k| a + (b - a) * (k as f32 / parts as f32)));
-        }
+    let total = sharp.iter().map(|[a, b]| a.distance(*b)).sum::<f32>();
+    let wished = thickness.unwrap_or(total / (OPEN_EDGE_PARTS * sharp.len().max(1) as f32));
+    let spacing = wished.max(total / EDGE_SAMPLES_MAX);
+    for [a, b] in sharp {
+        // No parts, and no points, where the spacing is 0: there is no edge then.
+        let parts = (a.distance(b) / spacing).ceil() as u32;
+        points.extend((1..parts).map(|k| a + (b - a) * (k as f32 / parts as f32)));
     }
     points
 }

@@ -41,15 +41,17 @@ pub(crate) struct Topology {
 /// What the triangles do at an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EdgeKind {
-    /// As many triangles run along it in one direction as in the other, and they are not in one plane.
-    Crease,
+    /// Its triangles bend away from the outside: another surface can touch it.
+    Ridge,
+    /// Its triangles bend towards the outside.
+    Valley,
     /// Its triangles lie in one plane.
     Flat,
     /// Triangles are missing: the surface ends here.
     Boundary,
 }
 
-/// Cosine of the angle between normals below which an edge counts as a crease: 5 degrees.
+/// Cosine of the angle between normals above which an edge counts as flat: 5 degrees.
 const FLAT_COSINE: f64 = 0.996_194_7;
 
 impl Topology {
@@ -149,18 +151,35 @@ fn edge_normals(vertices: &[Vec3], triangles: &[Triangle], edges: usize) -> (Vec
             balance[edge as usize] += if upwards { 1 } else { -1 };
         }
     }
+    let normals: Vec<Vec3> = sums.iter().map(|s| s.normalize_or_zero().as_vec3()).collect();
+    let heights = apex_heights(vertices, triangles, &normals);
     let kind = |k: usize| {
         let mean = sums[k].length() / f64::from(counts[k].max(1));
         if balance[k] != 0 {
             EdgeKind::Boundary
         } else if 2.0 * mean * mean - 1.0 > FLAT_COSINE {
-            // The mean of two unit vectors is the cosine of half the angle between them.
+            // The mean of two unit vectors is as long as the cosine of half the angle between them.
             EdgeKind::Flat
+        } else if heights[k] <= 0.0 {
+            EdgeKind::Ridge
         } else {
-            EdgeKind::Crease
+            EdgeKind::Valley
         }
     };
-    (sums.iter().map(|s| s.normalize_or_zero().as_vec3()).collect(), (0..edges).map(kind).collect())
+    let kinds = (0..edges).map(kind).collect();
+    (normals, kinds)
+}
+
+/// For each edge how far its triangles rise from it along its normal, in all: negative for ridges.
+fn apex_heights(vertices: &[Vec3], triangles: &[Triangle], edge_normals: &[Vec3]) -> Vec<f32> {
+    let mut heights = vec![0.0; edge_normals.len()];
+    for triangle in triangles {
+        for (k, edge) in triangle.edges.into_iter().enumerate() {
+            let [from, apex] = [k, (k + 2) % 3].map(|c| vertices[triangle.corners[c] as usize]);
+            heights[edge as usize] += edge_normals[edge as usize].dot(apex - from);
+        }
+    }
+    heights
 }
 
 fn vertex_normals(vertices: &[Vec3], triangles: &[Triangle]) -> Vec<Vec3> {
