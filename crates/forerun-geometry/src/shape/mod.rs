@@ -11,6 +11,7 @@ mod hull_faces;
 mod hull_surface;
 mod measure;
 mod mesh;
+pub mod mesh_make;
 mod mesh_topology;
 
 pub use compound::Compound;
@@ -167,8 +168,19 @@ impl Shape {
     /// # Errors
     /// When the mesh is open or otherwise not the surface of a solid; see [`Mesh::new`].
     pub fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Shape, ShapeError> {
-        let mesh = Mesh::new(vertices, triangles).map_err(|e| ShapeError::new("mesh", e.to_string()))?;
-        Ok(Shape::Mesh(Arc::new(mesh)))
+        Ok(Mesh::new(vertices, triangles)?.into())
+    }
+}
+
+impl From<Mesh> for Shape {
+    fn from(mesh: Mesh) -> Shape {
+        Shape::Mesh(Arc::new(mesh))
+    }
+}
+
+impl From<MeshError> for ShapeError {
+    fn from(error: MeshError) -> ShapeError {
+        ShapeError::new("mesh", error.to_string())
     }
 }
 
