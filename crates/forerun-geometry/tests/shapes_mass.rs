@@ -211,5 +211,5 @@ fn an_open_mesh_weighs_nothing() {
     let closed = mesh_make::cuboid(Vec3::ONE).unwrap();
     let open = Mesh::open(closed.vertices.clone(), closed.triangles[1..].to_vec()).unwrap();
     assert!(!open.closed);
-    assert_eq!(Shape::from(open).mass_properties(1000.0).mass, 0.0);
+    assert!(Shape::from(open).mass_properties(1000.0).mass.abs() <= 0.0);
 }

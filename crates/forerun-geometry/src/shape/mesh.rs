@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::measure::turned_extents;
 use super::mesh_topology::{check_edges, drop_degenerate, drop_unused, weld_equal};
+use super::triangle_tree::TriangleTree;
 use crate::{Aabb, Pose, Vec3};
 
 /// A triangle mesh. Fields are public to read; make one with [`Mesh::new`] or [`Mesh::open`].
@@ -25,6 +26,7 @@ pub struct Mesh {
     bounds: Aabb,
     radius: f32,
     half_thickness: f32,
+    tree: TriangleTree,
 }
 
 /// What was mended when a mesh was made.
@@ -211,6 +213,7 @@ impl Mesh {
         let bounds = Aabb::around(vertices.iter().copied());
         let centre = bounds.centre();
         let radius = vertices.iter().map(|v| v.distance(centre)).fold(0.0, f32::max);
+        let tree = TriangleTree::new(&vertices, &triangles);
         Mesh {
             vertices,
             triangles,
@@ -219,6 +222,7 @@ impl Mesh {
             bounds,
             radius,
             half_thickness: half_thickness.unwrap_or(0.0),
+            tree,
         }
     }
 
@@ -232,6 +236,16 @@ impl Mesh {
     #[must_use]
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.vertices[i as usize])
+    }
+
+    /// Calls `visit` with the index of every triangle whose box overlaps `aabb` (in the mesh's frame), and some near it, always in
+    /// the same order.
+    pub fn triangles_near(&self, aabb: &Aabb, visit: impl FnMut(u32)) {
+        self.tree.near(aabb, visit);
+    }
+
+    pub(crate) fn tree(&self) -> &TriangleTree {
+        &self.tree
     }
 
     /// Half of the smallest thickness, estimated as volume over area: exact for a plate, a third for a ball, half for the tube of a

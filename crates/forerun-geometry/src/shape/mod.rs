@@ -13,6 +13,7 @@ mod measure;
 mod mesh;
 pub mod mesh_make;
 mod mesh_topology;
+mod triangle_tree;
 
 pub use compound::Compound;
 pub use hull::{Hull, HullEdge, HullFace};
