@@ -5,8 +5,8 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::shape::{Capsule, Hull, Mesh};
-use crate::{Aabb, Pose, Quat, Shape, Vec3};
+use crate::shape::{Capsule, FirstHits, Hull, Mesh};
+use crate::{Pose, Quat, Shape, Vec3};
 
 /// A half line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,94 +244,17 @@ fn hull_hit(hull: &Hull, line: &Line) -> Option<Hit> {
 
 /// The nearest triangle that faces the ray. If one that faces away comes first, the ray starts inside (closed mesh) or meets its back.
 fn mesh_hit(mesh: &Mesh, line: &Line) -> Option<Hit> {
-    let inverse = line.direction.recip();
     // On a silhouette edge the ray meets a front and a back at the same point, in an order that rounding decides: then the front counts.
-    let size = mesh.bounds().half_extents().max_element();
-    let same_point = |t: f64| t + 1e-6 * (t + f64::from(size));
-    let mut fronts = Nearest::NONE;
-    let mut backs = Nearest::NONE;
-    mesh.tree().walk(
-        |bounds| box_entry(bounds, line.origin, inverse),
-        |triangle| {
-            let corners = mesh.corners(triangle as usize).map(|v| v.as_dvec3());
-            if let Some((t, side)) = triangle_hit(line, corners) {
-                let nearest = if side == Side::Front { &mut fronts } else { &mut backs };
-                nearest.offer(t, triangle);
-            }
-            fronts.t.min(same_point(backs.t))
-        },
-        f64::INFINITY,
-    );
-    let outward = |triangle: u32| {
-        let [a, b, c] = mesh.corners(triangle as usize).map(|v| v.as_dvec3());
-        (b - a).cross(c - a).normalize_or_zero()
-    };
-    if fronts.t.is_finite() && fronts.t <= same_point(backs.t) {
-        Some(Hit { distance: fronts.t, normal: Some(outward(fronts.triangle)) })
-    } else if backs.t.is_finite() {
-        let back = Hit { distance: backs.t, normal: Some(-outward(backs.triangle)) };
-        Some(if mesh.closed { Hit::INSIDE } else { back })
+    let size = f64::from(mesh.bounds().half_extents().max_element());
+    let same_point = |t: f64| t + 1e-6 * (t + size);
+    let reach = |first: &FirstHits| first.front.t.min(same_point(first.back.t));
+    let FirstHits { front, back } = mesh.first_hits(line.origin, line.direction, reach);
+    if front.t.is_finite() && front.t <= same_point(back.t) {
+        Some(Hit { distance: front.t, normal: Some(mesh.face_vector(front.triangle).normalize_or_zero()) })
+    } else if back.t.is_finite() {
+        let normal = -mesh.face_vector(back.triangle).normalize_or_zero();
+        Some(if mesh.closed { Hit::INSIDE } else { Hit { distance: back.t, normal: Some(normal) } })
     } else {
         None
     }
-}
-
-struct Nearest {
-    t: f64,
-    triangle: u32,
-}
-
-impl Nearest {
-    const NONE: Nearest = Nearest { t: f64::INFINITY, triangle: u32::MAX };
-
-    /// Of equal distances the lower triangle, whatever the order of the tree.
-    fn offer(&mut self, t: f64, triangle: u32) {
-        if (t, triangle) < (self.t, self.triangle) {
-            *self = Nearest { t, triangle };
-        }
-    }
-}
-
-#[derive(PartialEq)]
-enum Side {
-    Front,
-    Back,
-}
-
-/// Where a ray enters a box (0 inside); `None` when it misses. Slightly generous, so that rounding loses no triangle.
-fn box_entry(bounds: &Aabb, origin: DVec3, inverse_direction: DVec3) -> Option<f64> {
-    let near = (bounds.min.as_dvec3() - origin) * inverse_direction;
-    let far = (bounds.max.as_dvec3() - origin) * inverse_direction;
-    let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
-    for axis in 0..3 {
-        // 0 * infinity is NaN where the ray runs in a side of the box: max and min leave NaN out.
-        let (a, b) = (near[axis], far[axis]);
-        if a.is_nan() || b.is_nan() {
-            continue;
-        }
-        enter = enter.max(a.min(b));
-        exit = exit.min(a.max(b));
-    }
-    (enter <= exit * (1.0 + 1e-12)).then_some(enter)
-}
-
-/// Distance to a triangle, and which side of it the ray meets.
-///
-/// By the signs of the volumes between the line and each edge: two triangles compute the same number for a common edge but for its sign,
-/// so that no line slips through between them.
-fn triangle_hit(line: &Line, corners: [DVec3; 3]) -> Option<(f64, Side)> {
-    let [a, b, c] = corners.map(|v| v - line.origin);
-    let d = line.direction;
-    let (u, v, w) = (d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b)));
-    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-        return None;
-    }
-    let sum = u + v + w;
-    if sum == 0.0 {
-        return None;
-    }
-    let point = (a * u + b * v + c * w) / sum;
-    let t = point.dot(d) / d.length_squared();
-    // The volumes are positive where the triangle turns counter-clockwise seen along the ray: from behind.
-    (t >= 0.0).then_some((t, if sum < 0.0 { Side::Front } else { Side::Back }))
 }

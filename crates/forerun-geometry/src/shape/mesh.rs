@@ -188,8 +188,10 @@ impl Mesh {
             triangles.iter_mut().for_each(|t| t.swap(1, 2));
             repairs.turned = true;
         }
-        let half_thickness = (volume.abs() / area) as f32;
-        Ok(Mesh::assemble(vertices, triangles, repairs, Some(half_thickness)))
+        let mut mesh = Mesh::assemble(vertices, triangles, repairs);
+        mesh.closed = true;
+        mesh.half_thickness = mesh.measure_half_thickness();
+        Ok(mesh)
     }
 
     /// A mesh that need not be closed: for fixed bodies, like terrain. It is closed all the same when its edges say so.
@@ -201,29 +203,16 @@ impl Mesh {
             return Ok(mesh);
         }
         let (vertices, triangles, repairs) = clean(vertices, triangles)?;
-        Ok(Mesh::assemble(vertices, triangles, repairs, None))
+        Ok(Mesh::assemble(vertices, triangles, repairs))
     }
 
-    fn assemble(
-        vertices: Vec<Vec3>,
-        triangles: Vec<[u32; 3]>,
-        repairs: MeshRepairs,
-        half_thickness: Option<f32>,
-    ) -> Mesh {
+    /// An open mesh.
+    fn assemble(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, repairs: MeshRepairs) -> Mesh {
         let bounds = Aabb::around(vertices.iter().copied());
         let centre = bounds.centre();
         let radius = vertices.iter().map(|v| v.distance(centre)).fold(0.0, f32::max);
         let tree = TriangleTree::new(&vertices, &triangles);
-        Mesh {
-            vertices,
-            triangles,
-            closed: half_thickness.is_some(),
-            repairs,
-            bounds,
-            radius,
-            half_thickness: half_thickness.unwrap_or(0.0),
-            tree,
-        }
+        Mesh { vertices, triangles, closed: false, repairs, bounds, radius, half_thickness: 0.0, tree }
     }
 
     /// The box around the vertices, in the mesh's frame.
@@ -248,8 +237,8 @@ impl Mesh {
         &self.tree
     }
 
-    /// Half of the smallest thickness, estimated as volume over area: exact for a plate, a third for a ball, half for the tube of a
-    /// torus. 0 for open meshes. Metres.
+    /// Half of the smallest thickness: from triangle middles straight through to the other side, but for the thinnest twentieth of the
+    /// surface, as sharp edges are thin without end. 0 for open meshes. Metres.
     #[must_use]
     pub fn half_thickness(&self) -> f32 {
         self.half_thickness

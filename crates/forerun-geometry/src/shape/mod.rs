@@ -12,12 +12,14 @@ mod hull_surface;
 mod measure;
 mod mesh;
 pub mod mesh_make;
+mod mesh_ray;
 mod mesh_topology;
 mod triangle_tree;
 
 pub use compound::Compound;
 pub use hull::{Hull, HullEdge, HullFace};
 pub use mesh::{Mesh, MeshError, MeshRepairs};
+pub(crate) use mesh_ray::FirstHits;
 
 /// A shape in a frame of its own. Cloning is cheap: large shapes are shared.
 ///
