@@ -4,7 +4,6 @@
 use std::sync::Arc;
 
 use forerun_geometry::contact::mesh::mesh_manifolds;
-use forerun_geometry::sdf::MeshCollider;
 use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Mesh, Sphere};
 use forerun_geometry::{ContactPoint, Manifold, Motion, Placed, Pose, Quat, Shape, Vec3};
 
@@ -15,8 +14,7 @@ use meshes::{Random, Triangles};
 const MARGIN: f32 = 0.02;
 
 fn shape((vertices, triangles): Triangles) -> Shape {
-    let collider = MeshCollider::build(&vertices, &triangles).expect("a valid mesh");
-    Shape::Mesh(Arc::new(Mesh { vertices, triangles, collider }))
+    Shape::Mesh(Arc::new(Mesh::open(vertices, triangles).expect("a valid mesh")))
 }
 
 fn torus() -> Shape {

@@ -2,14 +2,19 @@
 #![allow(dead_code, reason = "each test uses some of the common meshes")]
 
 use forerun_geometry::Vec3;
-use forerun_geometry::sdf::{MeshCollider, MeshDefect};
+use forerun_geometry::sdf::Field;
+use forerun_geometry::shape::Mesh;
 
 #[path = "common/meshes.rs"]
 mod meshes;
 use meshes::{Random, Triangles};
 
-fn collider((vertices, triangles): &Triangles) -> MeshCollider {
-    MeshCollider::build(vertices, triangles).expect("a valid mesh")
+fn mesh((vertices, triangles): Triangles) -> Mesh {
+    Mesh::new(vertices, triangles).expect("a closed mesh")
+}
+
+fn field(mesh: &Mesh) -> &Field {
+    mesh.collider().field.as_ref().expect("closed meshes have a field")
 }
 
 /// Root mean square and largest of numbers.
@@ -20,9 +25,9 @@ fn spread(values: &[f32]) -> (f32, f32) {
 
 #[test]
 fn a_torus_field_is_close_to_the_formula_near_the_surface() {
-    let collider = collider(&meshes::torus(0.5, 0.2, 48, 16));
-    let field = collider.field.as_ref().expect("closed");
-    assert!((collider.half_thickness - 0.2).abs() < 0.01, "half thickness {}", collider.half_thickness);
+    let mesh = mesh(meshes::torus(0.5, 0.2, 48, 16));
+    let field = field(&mesh);
+    assert!((mesh.half_thickness() - 0.2).abs() < 0.01, "half thickness {}", mesh.half_thickness());
     let mut random = Random(1);
     let (mut values, mut angles, mut rough_angles) = (vec![], vec![], vec![]);
     while values.len() < 4000 {
@@ -49,8 +54,8 @@ fn a_torus_field_is_close_to_the_formula_near_the_surface() {
 
 #[test]
 fn a_sphere_field_is_close_to_the_formula_everywhere() {
-    let collider = collider(&meshes::sphere(0.5, 48, 24));
-    let field = collider.field.as_ref().expect("closed");
+    let mesh = mesh(meshes::sphere(0.5, 48, 24));
+    let field = field(&mesh);
     let mut random = Random(2);
     for _ in 0..4000 {
         let p = random.vector() * 3.0;
@@ -75,9 +80,9 @@ fn inside_is_negative_and_outside_positive() {
         ("l", meshes::l_shape(), meshes::inside_l_shape),
         ("sphere", meshes::sphere(0.5, 24, 12), |p| p.length() < 0.5),
     ];
-    for (name, mesh, inside) in shapes {
-        let collider = collider(&mesh);
-        let field = collider.field.as_ref().expect("closed");
+    for (name, triangles, inside) in shapes {
+        let mesh = self::mesh(triangles);
+        let field = field(&mesh);
         let mut random = Random(3);
         let mut seen = [0, 0];
         for _ in 0..20_000 {
@@ -97,8 +102,8 @@ fn inside_is_negative_and_outside_positive() {
 #[test]
 fn a_box_field_is_exact_beside_its_faces() {
     let half = Vec3::new(0.6, 0.3, 0.2);
-    let collider = collider(&meshes::cuboid(half));
-    let field = collider.field.as_ref().expect("closed");
+    let mesh = mesh(meshes::cuboid(half));
+    let field = field(&mesh);
     for k in 0..40 {
         let above = -0.05 + 0.0025 * k as f32;
         let (distance, gradient) = field.distance_and_gradient(Vec3::new(0.1, -0.05, half.z + above));
@@ -109,41 +114,21 @@ fn a_box_field_is_exact_beside_its_faces() {
 
 #[test]
 fn the_same_mesh_gives_the_same_bytes() {
-    let mesh = meshes::torus(0.5, 0.2, 48, 16);
-    assert!(collider(&mesh) == collider(&mesh));
+    let make = || mesh(meshes::torus(0.5, 0.2, 48, 16));
+    assert!(make() == make());
 }
 
 #[test]
-fn duplicated_vertices_make_no_difference_to_the_field() {
-    let (vertices, triangles) = meshes::l_shape();
-    let loose: Vec<Vec3> = triangles.iter().flatten().map(|i| vertices[*i as usize]).collect();
-    let loose_triangles: Vec<[u32; 3]> =
-        (0..triangles.len() as u32).map(|i| [0, 1, 2].map(|k| 3 * i + k)).collect();
-    let (whole, loose) = (collider(&(vertices, triangles)), collider(&(loose, loose_triangles)));
-    assert!(loose.is_closed());
-    assert_eq!(whole.field, loose.field);
+fn an_open_mesh_has_no_field() {
+    let (vertices, mut triangles) = meshes::cuboid(Vec3::ONE);
+    triangles.pop();
+    assert!(Mesh::open(vertices, triangles).expect("valid numbers").collider().field.is_none());
 }
 
 #[test]
 fn a_large_thin_mesh_keeps_its_field_small() {
-    let collider = collider(&meshes::cuboid(Vec3::new(5.0, 0.005, 5.0)));
-    let field = collider.field.as_ref().expect("closed");
-    assert!((collider.half_thickness - 0.005).abs() < 1e-4);
+    let mesh = mesh(meshes::cuboid(Vec3::new(5.0, 0.005, 5.0)));
+    let field = field(&mesh);
+    assert!((mesh.half_thickness() - 0.005).abs() < 1e-4);
     assert!(field.bytes() <= 2 << 20, "{} bytes", field.bytes());
-}
-
-#[test]
-fn bad_meshes_are_named() {
-    let (vertices, mut triangles) = meshes::cuboid(Vec3::ONE);
-    let build = |v: &[Vec3], t: &[[u32; 3]]| MeshCollider::build(v, t).map(|c| c.is_closed());
-    assert_eq!(build(&vertices, &[]), Err(MeshDefect::NoArea));
-    assert_eq!(build(&vertices, &[[0, 1, 1]]), Err(MeshDefect::NoArea));
-    assert_eq!(build(&vertices, &[[0, 1, 2], [0, 1, 8]]), Err(MeshDefect::NoSuchVertex { triangle: 1 }));
-    let not_finite = [Vec3::ZERO, Vec3::X, Vec3::new(0.0, f32::NAN, 0.0)];
-    assert_eq!(build(&not_finite, &[[0, 1, 2]]), Err(MeshDefect::NotFinite { vertex: 2 }));
-    assert_eq!(build(&vertices, &triangles[1..]), Ok(false));
-    for t in &mut triangles {
-        t.swap(0, 1);
-    }
-    assert_eq!(build(&vertices, &triangles), Err(MeshDefect::InsideOut));
 }

@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::Field;
-use super::triangle_tree::{Nearest, TriangleTree};
+use super::nearest::{Nearest, Skin};
 use crate::{Aabb, Vec3};
 
 /// Cells in half the thinnest thickness: 4 make the normals good to a degree (2 would still do).
@@ -14,25 +14,20 @@ const CELLS_PER_HALF_THICKNESS: f32 = 4.0;
 const PADDING: usize = 2;
 /// Largest grid: 2 MB at two bytes a node. Meshes that are large and thin get larger cells instead.
 const NODES_MAX: usize = 1 << 20;
-/// Part of the surface that may be thinner than what counts as the thinnest: edges taper to nothing.
-const THINNER_PART: f64 = 0.05;
-/// Triangles at which the thickness is measured, evenly spread over the list.
-const THICKNESS_PROBES: usize = 4096;
-
 /// Cells along the side of a block that is either computed node by node or, far from the surface, interpolated.
 const BLOCK: usize = 4;
 /// Nodes nearer to the surface than this many cells are exact. Farther ones only serve to cull.
 const EXACT_CELLS: f32 = 4.0;
 
 /// The field of a closed surface: exact distances to the triangles at the nodes near it, signs by pseudo-normals.
-pub(crate) fn bake(tree: &TriangleTree, half_thickness: f32) -> Field {
-    let bounds = bounds_of(&tree.topology().vertices);
-    let cell = cell_size(&bounds, half_thickness / CELLS_PER_HALF_THICKNESS);
+pub(crate) fn bake(skin: Skin<'_>) -> Field {
+    let bounds = skin.mesh.bounds();
+    let cell = cell_size(&bounds, skin.mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
     let size = grid_size(&bounds, cell).map(|n| n as usize);
     let cells = Vec3::from_array(size.map(|n| (n - 1) as f32));
     let origin = (bounds.min + bounds.max - cells * cell) * 0.5;
     let distances = vec![f32::NAN; size.iter().product()];
-    let mut baker = Baker { tree, origin, cell, size, distances, guess: None };
+    let mut baker = Baker { skin, origin, cell, size, distances, guess: None };
     let blocks = baker.blocks();
     for block in &blocks {
         for node in block.corners() {
@@ -51,7 +46,7 @@ pub(crate) fn bake(tree: &TriangleTree, half_thickness: f32) -> Field {
 
 /// A field in the making.
 struct Baker<'a> {
-    tree: &'a TriangleTree,
+    skin: Skin<'a>,
     origin: Vec3,
     cell: f32,
     size: [usize; 3],
@@ -118,10 +113,9 @@ impl Baker<'_> {
             return;
         }
         let at = DVec3::from_array(node.map(|i| i as f64)) * f64::from(self.cell) + self.origin.as_dvec3();
-        self.guess = self.tree.nearest(at, self.guess.as_ref());
-        // A surface has triangles, so there is a nearest one.
-        self.distances[index] =
-            self.guess.map_or(0.0, |nearest| self.tree.signed(at, &nearest).distance as f32);
+        let nearest = self.skin.nearest(at, self.guess.as_ref());
+        self.distances[index] = self.skin.signed(at, &nearest).distance as f32;
+        self.guess = Some(nearest);
     }
 
     /// Trilinear interpolation from the corners of the block.
@@ -140,42 +134,6 @@ impl Baker<'_> {
         }
         self.distances[index] = sum;
     }
-}
-
-/// Half the thickness of the thinnest part of a closed surface that is more than a twentieth of its area: measured
-/// from the middle of triangles straight inwards to the other side. Metres.
-pub(crate) fn half_thickness(tree: &TriangleTree) -> f32 {
-    let topology = tree.topology();
-    let stride = topology.triangles.len().div_ceil(THICKNESS_PROBES).max(1);
-    let extent = {
-        let bounds = bounds_of(&topology.vertices);
-        f64::from((bounds.max - bounds.min).max_element())
-    };
-    let mut probes: Vec<(f64, f64)> = Vec::new();
-    for (i, triangle) in topology.triangles.iter().enumerate().step_by(stride) {
-        let [a, b, c] = topology.corners(triangle);
-        let inwards = -tree.face_normal(i as u32);
-        let area = (b - a).cross(c - a).length();
-        let thickness = tree.first_exit((a + b + c) / 3.0, inwards, 1e-6 * extent);
-        probes.push((thickness.unwrap_or(extent), area));
-    }
-    probes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let total: f64 = probes.iter().map(|p| p.1).sum();
-    let mut thinner = 0.0;
-    for (thickness, area) in probes {
-        thinner += area;
-        if thinner > THINNER_PART * total {
-            return (0.5 * thickness) as f32;
-        }
-    }
-    (0.5 * extent) as f32
-}
-
-/// The smallest box around points.
-pub(crate) fn bounds_of(points: &[Vec3]) -> Aabb {
-    let min = points.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
-    let max = points.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
-    Aabb { min, max }
 }
 
 /// The wished cell size, or the smallest larger one (in steps of a twentieth) whose grid is not too large.

@@ -3,8 +3,9 @@
 //! Promise: exact for spheres, boxes, capsules, cylinders and half-spaces; for hulls exact near faces and edges, and
 //! never more than the true distance.
 
+use super::Field;
 use super::lanes::{Lanes, Lanes3, WIDTH};
-use super::{Field, TriangleTree};
+use super::nearest::Skin;
 use crate::Vec3;
 use crate::shape::{Capsule, Cuboid, Cylinder, Hull};
 
@@ -22,7 +23,7 @@ pub(crate) enum Surface<'a> {
     /// A closed mesh.
     Field(&'a Field),
     /// An open mesh: its front is outside. Points deeper behind it than a limit (metres) are not inside of anything.
-    Sheet(&'a TriangleTree, f32),
+    Sheet(Skin<'a>, f32),
 }
 
 impl Surface<'_> {
@@ -41,7 +42,7 @@ impl Surface<'_> {
             Surface::Cylinder(c) => cylinder(p, *c),
             Surface::Hull(planes) => hull(p, planes),
             Surface::Field(field) => field.look_up(p),
-            Surface::Sheet(tree, depth_limit) => sheet(p, tree, *depth_limit),
+            Surface::Sheet(skin, depth_limit) => sheet(p, skin, *depth_limit),
         }
     }
 
@@ -50,13 +51,10 @@ impl Surface<'_> {
     pub(crate) fn lower_bound(&self, p: Lanes3) -> Lanes {
         match self {
             Surface::Field(field) => field.lower_bound(p),
-            Surface::Sheet(tree, depth_limit) => {
-                let mut bound = Lanes::splat(f32::INFINITY);
+            Surface::Sheet(skin, depth_limit) => {
+                let mut bound = Lanes::ZERO;
                 for i in 0..WIDTH {
-                    let point = p.lane(i).as_dvec3();
-                    if let Some(nearest) = tree.nearest(point, None) {
-                        bound.0[i] = tree.signed(point, &nearest).distance.abs() as f32 - depth_limit;
-                    }
+                    bound.0[i] = skin.look_up(p.lane(i)).distance.abs() as f32 - depth_limit;
                 }
                 bound
             }
@@ -64,21 +62,14 @@ impl Surface<'_> {
         }
     }
 
-    /// Signed distance and gradient at one point, exact for meshes too: from the triangles.
-    pub(crate) fn exact(&self, p: Vec3, tree: Option<&TriangleTree>) -> (f32, Vec3) {
-        match (self, tree) {
-            (Surface::Field(_), Some(tree)) => {
-                let point = p.as_dvec3();
-                tree.nearest(point, None).map_or((f32::INFINITY, Vec3::Y), |nearest| {
-                    let signed = tree.signed(point, &nearest);
-                    (signed.distance as f32, signed.gradient)
-                })
-            }
-            _ => {
-                let (d, g) = self.look_up(Lanes3::splat(p));
-                (d.0[0], g.lane(0))
-            }
+    /// Signed distance and gradient at one point; in a field from the triangles of its mesh, exact at any distance.
+    pub(crate) fn exact(&self, p: Vec3, skin: Option<&Skin<'_>>) -> (f32, Vec3) {
+        if let (Surface::Field(_), Some(skin)) = (self, skin) {
+            let signed = skin.look_up(p);
+            return (signed.distance as f32, signed.gradient);
         }
+        let (d, g) = self.look_up(Lanes3::splat(p));
+        (d.0[0], g.lane(0))
     }
 }
 
@@ -164,16 +155,14 @@ pub(crate) fn hull_planes(hull: &Hull) -> Vec<(Vec3, f32)> {
     faces.chain(edges).collect()
 }
 
-fn sheet(p: Lanes3, tree: &TriangleTree, depth_limit: f32) -> (Lanes, Lanes3) {
+fn sheet(p: Lanes3, skin: &Skin<'_>, depth_limit: f32) -> (Lanes, Lanes3) {
     let mut distance = Lanes::splat(f32::INFINITY);
     let mut gradient = Lanes3::splat(Vec3::Y);
     for i in 0..WIDTH {
-        let point = p.lane(i).as_dvec3();
-        let Some(nearest) = tree.nearest(point, None) else { continue };
-        let signed = tree.signed(point, &nearest);
-        let behind = signed.distance < 0.0;
+        let signed = skin.look_up(p.lane(i));
         // Behind a boundary edge is beside the sheet; far behind the sheet is under a bridge.
-        if behind && (signed.on_boundary || signed.distance < -f64::from(depth_limit)) {
+        let lost = signed.on_boundary || signed.distance < -f64::from(depth_limit);
+        if signed.distance < 0.0 && lost {
             continue;
         }
         distance.0[i] = signed.distance as f32;

@@ -6,7 +6,7 @@ use super::lanes::{Lanes, Lanes3, WIDTH};
 use crate::Vec3;
 
 /// Points of a surface in leaves of 8, the leaves in nodes of 8.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     /// The points of leaf k; the last leaf repeats its last point.
     points: Vec<Lanes3>,

@@ -4,8 +4,9 @@ use glam::Mat3;
 
 use super::{MOTION_AHEAD, Part};
 use crate::contact::Placed;
+use crate::sdf::Samples;
+use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
-use crate::sdf::{Samples, TriangleTree};
 use crate::shape::Mesh;
 use crate::{Pose, Shape, Vec3};
 
@@ -18,7 +19,7 @@ pub(super) struct Direction<'a> {
     /// What they are looked up in.
     pub(super) surface: Surface<'a>,
     /// The triangles of the surface if it is a mesh.
-    pub(super) tree: Option<&'a TriangleTree>,
+    pub(super) skin: Option<Skin<'a>>,
     /// From the frame of the points to that of the field: rotation.
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
@@ -70,9 +71,9 @@ fn direction<'a>(
 ) -> Option<Direction<'a>> {
     let to_field = field_part.pose.inverse() * sampled_part.pose;
     let surface = surface_of(field_part.shape, 2.0 * sampled_part.shape.half_thickness())?;
-    let tree = if let Shape::Mesh(mesh) = field_part.shape { Some(&mesh.collider.tree) } else { None };
+    let skin = if let Shape::Mesh(mesh) = field_part.shape { Some(Skin::of(mesh)) } else { None };
     let points = match (sampled_part.shape, field_part.shape) {
-        (Shape::Mesh(mesh), _) => Points::Mesh(&mesh.collider.samples),
+        (Shape::Mesh(mesh), _) => Points::Mesh(&mesh.collider().samples),
         (shape, Shape::Mesh(mesh)) => {
             let region = region_of(mesh, &to_field.inverse(), reach);
             let gradient = |p: Vec3| {
@@ -92,7 +93,7 @@ fn direction<'a>(
     Some(Direction {
         points,
         surface,
-        tree,
+        skin,
         axes: to_field.axes(),
         origin: to_field.position,
         field_pose: field_part.pose,
@@ -115,16 +116,16 @@ fn surface_of(shape: &Shape, depth_limit: f32) -> Option<Surface<'_>> {
         Shape::Hull(hull) => Surface::Hull(hull_planes(hull)),
         Shape::HalfSpace => Surface::HalfSpace,
         Shape::Compound(_) => return None,
-        Shape::Mesh(mesh) => match &mesh.collider.field {
+        Shape::Mesh(mesh) => match &mesh.collider().field {
             Some(field) => Surface::Field(field),
-            None => Surface::Sheet(&mesh.collider.tree, depth_limit),
+            None => Surface::Sheet(Skin::of(mesh), depth_limit),
         },
     })
 }
 
 /// The ball around a mesh, grown by `reach`, in the frame of the primitive.
 fn region_of(mesh: &Mesh, to_primitive: &Pose, reach: f32) -> Region {
-    let collider = &mesh.collider;
-    let spacing = if collider.is_closed() { 2.0 * collider.half_thickness } else { collider.radius };
-    Region { centre: to_primitive.position, radius: collider.radius + reach, spacing }
+    let radius = mesh.collider().radius;
+    let spacing = if mesh.closed { 2.0 * mesh.half_thickness() } else { radius };
+    Region { centre: to_primitive.position, radius: radius + reach, spacing }
 }

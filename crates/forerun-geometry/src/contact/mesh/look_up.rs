@@ -61,7 +61,7 @@ impl Direction<'_> {
         let centre = self.axes * point.centre + self.origin;
         let motion = self.drift + self.spin.cross(centre);
         // The field is exact only near the surface, and the surface of the ball may be far from its centre.
-        let (distance, gradient) = self.surface.exact(centre, self.tree);
+        let (distance, gradient) = self.surface.exact(centre, self.skin.as_ref());
         let near = distance - point.radius + gradient.dot(motion).min(0.0) < self.margin;
         let meant = near && gradient.length_squared() > GRADIENT_SQUARED_MIN;
         let point = RoundPoint { centre, radius: point.radius };
