@@ -12,7 +12,7 @@ pub mod pose;
 pub mod ray;
 pub mod shape;
 
-pub use bounds::Aabb;
+pub use bounds::{Aabb, BoundingSphere, Obb};
 pub use contact::{ContactPoint, Manifold, Motion, Placed};
 pub use glam::{Mat3, Quat, Vec3};
 pub use mass::MassProperties;

@@ -4,8 +4,8 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::measure::turned_extents;
 use super::mesh_topology::{check_edges, drop_degenerate, drop_unused, weld_equal};
+use super::reach::Reach;
 use super::triangle_tree::TriangleTree;
 use crate::{Aabb, Pose, Vec3};
 
@@ -24,7 +24,7 @@ pub struct Mesh {
     /// What was mended when it was made.
     pub repairs: MeshRepairs,
     bounds: Aabb,
-    radius: f32,
+    reach: Reach,
     half_thickness: f32,
     tree: TriangleTree,
 }
@@ -209,10 +209,9 @@ impl Mesh {
     /// An open mesh.
     fn assemble(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, repairs: MeshRepairs) -> Mesh {
         let bounds = Aabb::around(vertices.iter().copied());
-        let centre = bounds.centre();
-        let radius = vertices.iter().map(|v| v.distance(centre)).fold(0.0, f32::max);
+        let reach = Reach::of(&vertices);
         let tree = TriangleTree::new(&vertices, &triangles);
-        Mesh { vertices, triangles, closed: false, repairs, bounds, radius, half_thickness: 0.0, tree }
+        Mesh { vertices, triangles, closed: false, repairs, bounds, reach, half_thickness: 0.0, tree }
     }
 
     /// The box around the vertices, in the mesh's frame.
@@ -245,9 +244,7 @@ impl Mesh {
     }
 
     pub(super) fn aabb(&self, pose: &Pose) -> Aabb {
-        let centre = pose.transform_point(self.bounds.centre());
-        let reach = turned_extents(pose, self.bounds.half_extents()).min(Vec3::splat(self.radius));
-        Aabb::from_centre(centre, reach)
+        self.reach.aabb(pose)
     }
 }
 
