@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::mesh_topology::{check_edges, drop_degenerate, drop_unused, weld_equal};
+use super::mesh_topology::{check_edges, drop_degenerate, drop_unused, recut_slivers, weld_equal};
 use super::reach::Reach;
 use super::triangle_tree::TriangleTree;
 use crate::{Aabb, Pose, Vec3};
@@ -38,6 +38,8 @@ pub struct MeshRepairs {
     pub unused_vertices: u32,
     /// Triangles that were left out because two of their corners are the same or all three lie in a line.
     pub dropped_triangles: u32,
+    /// Triangles with their corners in a line that were cut anew together with a neighbour, so that the mesh stays closed.
+    pub recut_triangles: u32,
     /// Whether all triangles faced inwards and were turned round.
     pub turned: bool,
 }
@@ -61,6 +63,9 @@ impl fmt::Display for MeshRepairs {
         }
         if self.dropped_triangles > 0 {
             notes.push(format!("{} degenerate triangles left out", self.dropped_triangles));
+        }
+        if self.recut_triangles > 0 {
+            notes.push(format!("{} triangles with their corners in a line cut anew", self.recut_triangles));
         }
         if self.turned {
             notes.push("all triangles faced inwards and were turned round".to_owned());
@@ -171,7 +176,8 @@ impl std::error::Error for MeshError {}
 impl Mesh {
     /// A closed mesh, the surface of a solid; several shells are fine, and cavities are shells that face inwards.
     ///
-    /// Mended and noted in [`Mesh::repairs`]: duplicate vertices, unused vertices, degenerate triangles, and triangles that all face inwards.
+    /// Mended and noted in [`Mesh::repairs`]: duplicate vertices, unused vertices, degenerate triangles, and triangles that all
+    /// face inwards.
     ///
     /// # Errors
     /// When a number is not finite, an index is out of range, the surface is not closed and consistently wound, or it encloses no
@@ -261,6 +267,7 @@ fn clean(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Parts, Mes
         }
     }
     let welded_vertices = weld_equal(&vertices, &mut triangles);
+    let recut_triangles = recut_slivers(&vertices, &mut triangles);
     let dropped_triangles = drop_degenerate(&vertices, &mut triangles);
     if triangles.is_empty() {
         return Err(MeshError::Empty { dropped: dropped_triangles });
@@ -271,7 +278,7 @@ fn clean(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Parts, Mes
     Ok((
         vertices,
         triangles,
-        MeshRepairs { welded_vertices, unused_vertices, dropped_triangles, turned: false },
+        MeshRepairs { welded_vertices, unused_vertices, dropped_triangles, recut_triangles, turned: false },
     ))
 }
 
