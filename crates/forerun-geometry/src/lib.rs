@@ -8,6 +8,7 @@
 pub mod bounds;
 pub mod contact;
 pub mod mass;
+pub mod mesh_file;
 pub mod pose;
 pub mod ray;
 pub mod shape;
