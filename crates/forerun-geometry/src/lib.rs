@@ -11,6 +11,7 @@ pub mod mass;
 pub mod mesh_file;
 pub mod pose;
 pub mod ray;
+pub mod sdf;
 pub mod shape;
 
 pub use bounds::{Aabb, BoundingSphere, Obb};

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::mesh_topology::{check_edges, drop_degenerate, drop_unused, recut_slivers, weld_equal};
 use super::reach::Reach;
 use super::triangle_tree::TriangleTree;
+use crate::sdf::MeshCollider;
 use crate::{Aabb, Pose, Vec3};
 
 /// A triangle mesh. Fields are public to read; make one with [`Mesh::new`] or [`Mesh::open`].
@@ -27,6 +28,7 @@ pub struct Mesh {
     reach: Reach,
     half_thickness: f32,
     tree: TriangleTree,
+    collider: MeshCollider,
 }
 
 /// What was mended when a mesh was made.
@@ -197,6 +199,7 @@ impl Mesh {
         let mut mesh = Mesh::assemble(vertices, triangles, repairs);
         mesh.closed = true;
         mesh.half_thickness = mesh.measure_half_thickness();
+        mesh.collider = MeshCollider::new(&mesh);
         Ok(mesh)
     }
 
@@ -209,15 +212,19 @@ impl Mesh {
             return Ok(mesh);
         }
         let (vertices, triangles, repairs) = clean(vertices, triangles)?;
-        Ok(Mesh::assemble(vertices, triangles, repairs))
+        let mut mesh = Mesh::assemble(vertices, triangles, repairs);
+        mesh.collider = MeshCollider::new(&mesh);
+        Ok(mesh)
     }
 
-    /// An open mesh.
+    /// An open mesh that nothing touches yet.
     fn assemble(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, repairs: MeshRepairs) -> Mesh {
         let bounds = Aabb::around(vertices.iter().copied());
         let reach = Reach::of(&vertices);
         let tree = TriangleTree::new(&vertices, &triangles);
-        Mesh { vertices, triangles, closed: false, repairs, bounds, reach, half_thickness: 0.0, tree }
+        let collider = MeshCollider::default();
+        let (closed, half_thickness) = (false, 0.0);
+        Mesh { vertices, triangles, closed, repairs, bounds, reach, half_thickness, tree, collider }
     }
 
     /// The box around the vertices, in the mesh's frame.
@@ -236,6 +243,12 @@ impl Mesh {
     /// the same order.
     pub fn triangles_near(&self, aabb: &Aabb, visit: impl FnMut(u32)) {
         self.tree.near(aabb, visit);
+    }
+
+    /// What contact knows of the mesh.
+    #[must_use]
+    pub fn collider(&self) -> &MeshCollider {
+        &self.collider
     }
 
     pub(crate) fn tree(&self) -> &TriangleTree {
