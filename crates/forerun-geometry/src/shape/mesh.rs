@@ -223,7 +223,7 @@ impl Mesh {
         let reach = Reach::of(&vertices);
         let tree = TriangleTree::new(&vertices, &triangles);
         let collider = MeshCollider::default();
-        let (closed, half_thickness) = (false, 0.0);
+        let (closed, half_thickness) = (false, f32::INFINITY);
         Mesh { vertices, triangles, closed, repairs, bounds, reach, half_thickness, tree, collider }
     }
 
@@ -256,7 +256,8 @@ impl Mesh {
     }
 
     /// Half of the smallest thickness: from triangle middles straight through to the other side, but for the thinnest twentieth of the
-    /// surface, as sharp edges are thin without end. 0 for open meshes. Metres.
+    /// surface, as sharp edges are thin without end. Infinite for open meshes: what passes a sheet is told by the
+    /// thickness of the other body alone. Metres.
     #[must_use]
     pub fn half_thickness(&self) -> f32 {
         self.half_thickness
