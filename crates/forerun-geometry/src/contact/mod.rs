@@ -108,11 +108,6 @@ impl ContactPoint {
     /// Fills the unused places of a manifold.
     const FAR_APART: ContactPoint =
         ContactPoint { position: Vec3::ZERO, normal: Vec3::ZERO, separation: 1.0e6 };
-
-    /// The same point, seen from the other shape.
-    fn flipped(self) -> Self {
-        ContactPoint { normal: -self.normal, ..self }
-    }
 }
 
 impl Manifold {
@@ -128,8 +123,12 @@ impl Manifold {
     }
 
     /// The same contact, seen from the other shape.
-    fn flipped(self) -> Self {
-        Manifold { normal: -self.normal, points: self.points.map(ContactPoint::flipped), ..self }
+    fn flipped(mut self) -> Self {
+        self.normal = -self.normal;
+        for point in &mut self.points[..self.count as usize] {
+            point.normal = -point.normal;
+        }
+        self
     }
 
     /// The points that are meant.

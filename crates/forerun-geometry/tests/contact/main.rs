@@ -1,5 +1,6 @@
 //! Contact manifolds: known answers, and properties that hold for any two shapes.
 
 mod common;
+mod degenerate;
 mod known;
 mod random;
