@@ -18,6 +18,7 @@ mod cuboid;
 mod cylinder;
 mod gjk;
 mod half_space;
+pub mod mesh;
 mod penetration;
 mod reduce;
 mod solid;
@@ -78,7 +79,7 @@ pub fn contact_manifolds(first: &Placed, second: &Placed, margin: f32, out: &mut
         (Shape::Compound(_), _) | (_, Shape::Compound(_)) => {
             compound::compound_any(first, second, margin, out);
         }
-        (Shape::Mesh(_), _) | (_, Shape::Mesh(_)) => mesh_manifolds(first, second, margin, out),
+        (Shape::Mesh(_), _) | (_, Shape::Mesh(_)) => mesh::mesh_manifolds(first, second, margin, out),
         (Shape::Cuboid(a), Shape::Cuboid(b)) => {
             let found = cuboid_cuboid(a, &first.pose, b, &second.pose, margin);
             out.extend(found.or_else(|| convex::corner_about_to_hit(first, second, margin)));
@@ -86,9 +87,6 @@ pub fn contact_manifolds(first: &Placed, second: &Placed, margin: f32, out: &mut
         _ => out.extend(convex_pair((first.shape, &first.pose), (second.shape, &second.pose), margin)),
     }
 }
-
-/// Meshes meet through their distance fields, which another room provides.
-fn mesh_manifolds(_first: &Placed, _second: &Placed, _margin: f32, _out: &mut Vec<Manifold>) {}
 
 /// The manifold of two convex shapes, or of a convex shape and a half-space.
 fn convex_pair(first: (&Shape, &Pose), second: (&Shape, &Pose), margin: f32) -> Option<Manifold> {
