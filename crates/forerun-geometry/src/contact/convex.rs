@@ -64,7 +64,9 @@ pub(super) fn convex_convex(
 
 /// Two cuboids that no face of theirs brings together: the nearest corner or edge, if they are about to meet there.
 pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) -> Option<Manifold> {
-    if first.motion == Motion::default() && second.motion == Motion::default() {
+    let cuboids = matches!((first.shape, second.shape), (Shape::Cuboid(_), Shape::Cuboid(_)));
+    let still = first.motion == Motion::default() && second.motion == Motion::default();
+    if !cuboids || still {
         return None;
     }
     let origin = first.pose.position;
@@ -76,13 +78,6 @@ pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) 
     let point = manifold.points[0];
     let closing = first.motion.of(point.position) - second.motion.of(point.position);
     (closing.dot(point.normal) > point.separation).then_some(manifold)
-}
-
-impl Motion {
-    /// Displacement of a point that moves along, to first order. Metres.
-    fn of(&self, point: Vec3) -> Vec3 {
-        self.linear + self.angular.cross(point - self.about)
-    }
 }
 
 fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {

@@ -3,4 +3,5 @@
 mod common;
 mod degenerate;
 mod known;
+mod passing;
 mod random;
