@@ -39,10 +39,10 @@ pub(super) fn reduce(candidates: &mut Vec<Candidate>, directions: &[Direction], 
             }
             !belongs
         });
-        let direction = &directions[side[0].direction as usize];
-        let mut chosen = choose(&side, DEPTH_PENALTY * direction.margin / direction.reach);
+        let direction = &directions[side[0].direction];
+        let mut chosen = choose(&side, DEPTH_PENALTY * direction.near / direction.margin);
         for c in &mut chosen {
-            smooth(c, &directions[c.direction as usize]);
+            smooth(c, &directions[c.direction]);
         }
         emit(&chosen, out);
     }
@@ -122,8 +122,7 @@ fn emit(chosen: &[Candidate], out: &mut Vec<Manifold>) {
     let normal = sum.try_normalize().unwrap_or(chosen[0].normal);
     let manifolds = chosen.len().div_ceil(4);
     for turn in 0..manifolds {
-        let nothing = ContactPoint { position: Vec3::ZERO, normal, separation: 0.0 };
-        let mut manifold = Manifold { normal, points: [nothing; 4], count: 0 };
+        let mut manifold = Manifold { normal, points: [ContactPoint::FAR_APART; 4], count: 0 };
         for c in chosen.iter().skip(turn).step_by(manifolds) {
             let point = ContactPoint { position: c.position, normal: c.normal, separation: c.separation };
             manifold.points[manifold.count as usize] = point;
