@@ -29,7 +29,7 @@ use crate::stale::{Stale, same_body};
 
 /// What is known when a step is to be done (again).
 #[derive(Clone, Copy)]
-pub(crate) struct Inputs<'a> {
+pub(crate) struct Inputs<'a, 'b> {
     /// The frame that the step leaves.
     pub(crate) frame: Frame,
     /// The states there.
@@ -39,9 +39,9 @@ pub(crate) struct Inputs<'a> {
     /// What the bodies are.
     pub(crate) definitions: &'a Definitions,
     /// Who is near.
-    pub(crate) areas: &'a Areas,
+    pub(crate) areas: &'b Areas,
     /// What the commands at the end of the step did as it was before, if there are any.
-    pub(crate) effects: Option<&'a FrameEffects>,
+    pub(crate) effects: Option<&'b FrameEffects>,
     /// A rule left out, to show that the tests miss it.
     pub(crate) mutation: Mutation,
 }
@@ -108,7 +108,7 @@ pub(crate) struct Scratch {
 
 /// Finds the group that follows from `out_of_date` (sorted).
 pub(crate) fn affected<'a>(
-    inputs: &Inputs<'a>,
+    inputs: &Inputs<'a, '_>,
     out_of_date: &[BodyId],
     scratch: &mut Scratch,
 ) -> Affected<'a> {
@@ -152,7 +152,7 @@ pub(crate) fn affected<'a>(
 }
 
 struct Search<'a, 'b> {
-    inputs: &'b Inputs<'a>,
+    inputs: &'b Inputs<'a, 'b>,
     environment: Environment,
     scratch: &'b mut Scratch,
     met: Vec<Met<'a>>,

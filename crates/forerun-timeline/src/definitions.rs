@@ -100,12 +100,10 @@ impl Definitions {
                 continue;
             }
             current = next;
-            match history.entries.last_mut() {
-                Some((frame, body)) if *frame == key.frame && history.entries.len() > kept => {
-                    *body = current.clone();
-                }
-                _ => history.entries.push((key.frame, current.clone())),
+            if history.entries.last().is_some_and(|(frame, _)| *frame == key.frame) {
+                history.entries.pop();
             }
+            history.entries.push((key.frame, current.clone()));
         }
         share_equal(&mut history.entries[kept..], &old);
     }

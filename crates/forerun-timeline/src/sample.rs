@@ -5,7 +5,7 @@
 //! shorter arc (slerp, Shoemake 1985).
 
 use forerun_dynamics::{Body, BodyState, Environment};
-use forerun_geometry::{Quat, Vec3};
+use forerun_geometry::Quat;
 
 /// A velocity change that free flight explains to within this shows that no impulse acted. m/s.
 const FREE_VELOCITY_M_PER_S: f32 = 1e-3;
@@ -86,6 +86,7 @@ fn slerp(a: Quat, b: Quat, part: f32) -> Quat {
 mod tests {
     use super::*;
     use forerun_dynamics::BodyDef;
+    use forerun_geometry::Vec3;
     use forerun_geometry::shape::{Shape, Sphere};
 
     const DT: f32 = 1.0 / 60.0;
