@@ -36,11 +36,6 @@ pub(crate) struct Stale {
 }
 
 impl Stale {
-    /// All entries may be wrong.
-    pub(crate) fn everyone() -> Stale {
-        Stale { everyone: true, ..Stale::default() }
-    }
-
     /// The table that the next frame was computed from; `stored` is the one stored at this frame.
     pub(crate) fn old_table<'a>(&'a self, stored: &'a Arc<FrameTable>) -> &'a Arc<FrameTable> {
         self.basis.as_ref().unwrap_or(stored)

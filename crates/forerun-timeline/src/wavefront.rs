@@ -48,21 +48,24 @@ impl Timeline {
     /// What is out of date when the step from the horizon is guessed to give what the step before gave.
     fn stale_beyond_horizon(&self) -> Stale {
         let horizon = self.horizon();
+        let mut stale = Stale::default();
+        // None of the new frame's commands are in the guess.
+        stale.touched.extend(self.log.bodies_at(horizon.next()));
         let gravity_changes = [horizon, horizon.next()].iter().any(|f| self.log.changes_gravity_at(*f));
         if self.recompute_all || gravity_changes || horizon == self.oldest() {
-            return Stale::everyone();
+            stale.everyone = true;
+            return stale;
         }
         let before = horizon.minus(1);
-        let mut stale = Stale { basis: Some(Arc::clone(self.table(before))), ..Stale::default() };
+        stale.basis = Some(Arc::clone(self.table(before)));
+        // Those of the last frame changed what the step before gave.
         for body in self.log.bodies_at(horizon) {
             stale.bodies.insert(body, self.definitions.body(body, before).cloned());
             stale.touched.insert(body);
         }
-        // The commands of the last frame changed what the step before gave; those of the new one are not in the guess.
         for effect in self.effects.get(&horizon).into_iter().flatten() {
             stale.touched.extend(&effect.1.woken);
         }
-        stale.touched.extend(self.log.bodies_at(horizon.next()));
         stale
     }
 
