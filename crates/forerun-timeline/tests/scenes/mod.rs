@@ -5,7 +5,7 @@ use forerun_geometry::Vec3;
 use forerun_geometry::shape::{Cuboid, Shape, Sphere};
 
 /// All scenes and their names.
-pub fn all() -> Vec<(&'static str, Vec<BodyDef>)> {
+pub(crate) fn all() -> Vec<(&'static str, Vec<BodyDef>)> {
     vec![
         ("piles", piles()),
         ("walls", walls()),
@@ -24,7 +24,7 @@ fn ground() -> BodyDef {
 }
 
 /// Six piles of four boxes, close but apart.
-pub fn piles() -> Vec<BodyDef> {
+pub(crate) fn piles() -> Vec<BodyDef> {
     let mut bodies = vec![ground()];
     for pile in 0..6 {
         for level in 0..4 {
@@ -36,7 +36,7 @@ pub fn piles() -> Vec<BodyDef> {
 }
 
 /// Two small walls, and a ball that flies into one of them.
-pub fn walls() -> Vec<BodyDef> {
+pub(crate) fn walls() -> Vec<BodyDef> {
     let mut bodies = vec![ground()];
     for wall in 0..2 {
         for row in 0..3 {
@@ -54,7 +54,7 @@ pub fn walls() -> Vec<BodyDef> {
 }
 
 /// A line of twelve dominoes, the first of them tipped, and a far one that nothing reaches.
-pub fn dominoes() -> Vec<BodyDef> {
+pub(crate) fn dominoes() -> Vec<BodyDef> {
     let mut bodies = vec![ground()];
     for i in 0..12 {
         let mut domino = BodyDef::new(cuboid(0.1, 0.5, 0.25)).at(Vec3::new(0.5 * i as f32, 0.5, 0.0));
@@ -68,7 +68,7 @@ pub fn dominoes() -> Vec<BodyDef> {
 }
 
 /// Boxes and balls that fall in a heap, some through each other's way.
-pub fn rain() -> Vec<BodyDef> {
+pub(crate) fn rain() -> Vec<BodyDef> {
     let mut bodies = vec![ground()];
     for i in 0..24 {
         let (x, y, z) = ((i % 3) as f32 * 0.7, 1.0 + 0.8 * (i / 3) as f32, (i % 2) as f32 * 0.6);
@@ -82,7 +82,7 @@ pub fn rain() -> Vec<BodyDef> {
 }
 
 /// A kinematic wall that pushes boxes in its way, and a pile beside it.
-pub fn pusher() -> Vec<BodyDef> {
+pub(crate) fn pusher() -> Vec<BodyDef> {
     let mut bodies = vec![ground()];
     let mut wall = BodyDef::new(cuboid(0.2, 0.5, 2.0)).at(Vec3::new(-2.0, 0.6, 0.0));
     wall.kind = BodyKind::Kinematic;
