@@ -144,13 +144,16 @@ impl FrameTable {
         (Arc::new(table), changed)
     }
 
-    /// Memory of the blocks that `before` does not share. Bytes.
-    pub(crate) fn bytes_beyond(&self, before: Option<&FrameTable>) -> usize {
+    /// Memory that `before` does not share. Bytes.
+    pub(crate) fn bytes_beyond(self: &Arc<FrameTable>, before: Option<&Arc<FrameTable>>) -> usize {
+        if before.is_some_and(|before| Arc::ptr_eq(self, before)) {
+            return 0;
+        }
         let shared = |index: usize, block: &Arc<Block>| {
-            before.and_then(|b| b.blocks.get(index)).is_some_and(|old| Arc::ptr_eq(old, block))
+            before.and_then(|before| before.blocks.get(index)).is_some_and(|old| Arc::ptr_eq(old, block))
         };
         let own = self.blocks.iter().enumerate().filter(|(index, block)| !shared(*index, block)).count();
-        own * size_of::<Block>() + self.blocks.len() * size_of::<Arc<Block>>()
+        own * size_of::<Block>() + self.blocks.len() * size_of::<Arc<Block>>() + size_of::<FrameTable>()
     }
 
     fn shares_all(&self, other: &FrameTable) -> bool {

@@ -382,7 +382,7 @@ impl Timeline {
     /// Memory of all stored states. Bytes.
     #[must_use]
     pub fn state_bytes(&self) -> usize {
-        let before = std::iter::once(None).chain(self.tables.iter().map(|table| Some(&**table)));
+        let before = std::iter::once(None).chain(self.tables.iter().map(Some));
         self.tables.iter().zip(before).map(|(table, before)| table.bytes_beyond(before)).sum()
     }
 
