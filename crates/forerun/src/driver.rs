@@ -1,0 +1,11 @@
+//! Drivers: who steps the physics, in which thread, and against which clock.
+//!
+//! *Architecture invariant:* this is the lowest floor that knows a thread or a clock; see README.md beside the rooms.
+
+mod clock;
+mod coupled;
+mod threads;
+
+pub use clock::Clock;
+pub use coupled::{Coupled, StepLimits};
+pub use threads::{Threads, ThreadsError};
