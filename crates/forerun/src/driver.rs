@@ -4,8 +4,13 @@
 
 mod clock;
 mod coupled;
+mod decoupled;
+mod frame_notes;
+mod physics;
 mod threads;
 
 pub use clock::Clock;
 pub use coupled::{Coupled, StepLimits};
+pub use decoupled::{Decoupled, DecoupledSettings, DriverError, Picture};
+pub use frame_notes::FrameNote;
 pub use threads::{Threads, ThreadsError};

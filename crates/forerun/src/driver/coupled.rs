@@ -102,7 +102,7 @@ mod tests {
         let mut world = World::new(Environment::default());
         let ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::Y * 100.0);
         world.add(&ball).expect("a plain ball");
-        Coupled::new(world, clock.clone(), Threads::all(), StepLimits::default())
+        Coupled::new(world, clock.clone(), Threads::all().expect("threads"), StepLimits::default())
     }
 
     #[test]

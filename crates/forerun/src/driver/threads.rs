@@ -6,20 +6,20 @@ use std::fmt;
 use std::num::NonZeroU16;
 
 /// A pool of threads that physics runs in.
+#[derive(Debug)]
 pub struct Threads {
-    pool: Option<rayon::ThreadPool>,
+    pool: rayon::ThreadPool,
 }
 
 /// The system did not give us the threads.
 #[derive(Debug)]
 pub struct ThreadsError {
-    wanted: NonZeroU16,
     cause: rayon::ThreadPoolBuildError,
 }
 
 impl fmt::Display for ThreadsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} physics threads cannot be started: {}; ask for fewer", self.wanted, self.cause)
+        write!(f, "the physics threads cannot be started: {}; ask for fewer", self.cause)
     }
 }
 
@@ -30,40 +30,35 @@ impl std::error::Error for ThreadsError {
 }
 
 impl Threads {
-    /// As many threads as the machine has cores, shared with everybody in the process.
-    #[must_use]
-    pub const fn all() -> Self {
-        Threads { pool: None }
+    /// As many threads as the machine has cores.
+    ///
+    /// # Errors
+    /// When the system refuses to start them.
+    pub fn all() -> Result<Self, ThreadsError> {
+        // To rayon, 0 means one per core.
+        Self::build(0)
     }
 
-    /// `count` threads of our own.
+    /// So many threads.
     ///
     /// # Errors
     /// When the system refuses to start them.
     pub fn exactly(count: NonZeroU16) -> Result<Self, ThreadsError> {
+        Self::build(usize::from(count.get()))
+    }
+
+    fn build(count: usize) -> Result<Self, ThreadsError> {
         rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(count.get()))
+            .num_threads(count)
             .thread_name(|i| format!("forerun-step-{i}"))
             .build()
-            .map(|pool| Threads { pool: Some(pool) })
-            .map_err(|cause| ThreadsError { wanted: count, cause })
+            .map(|pool| Threads { pool })
+            .map_err(|cause| ThreadsError { cause })
     }
 
-    /// Does `work` inside the pool; parallel loops in it use the pool's threads.
+    /// Does `work` on a thread of the pool; parallel loops in it use the others too.
     pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        match &self.pool {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
-    }
-}
-
-impl fmt::Debug for Threads {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.pool {
-            Some(pool) => write!(f, "Threads({})", pool.current_num_threads()),
-            None => f.write_str("Threads(all)"),
-        }
+        self.pool.install(work)
     }
 }
 
