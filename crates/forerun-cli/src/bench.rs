@@ -4,5 +4,7 @@ mod energy;
 mod measure;
 mod memory;
 mod overlap;
+mod storage;
 
-pub(crate) use measure::{Measurement, measure};
+pub(crate) use measure::{Measurement, Run, measure};
+pub(crate) use storage::bytes_per_body_frame;

@@ -22,6 +22,14 @@ impl Failure {
         Failure::Input(format!("{}: cannot be written: {error}; choose another folder with --out", path.display()))
     }
 
+    /// A command that this version only knows by name.
+    pub(crate) fn not_there_yet(command: &str) -> Self {
+        Failure::Input(format!(
+            "`forerun {command}` is not there yet in this version; `forerun run SCENE --out DIR` writes what a scene does as \
+             tables and charts"
+        ))
+    }
+
     /// A chart that cannot be drawn.
     pub(crate) fn chart(path: &Path, error: &str) -> Self {
         Failure::Input(format!(

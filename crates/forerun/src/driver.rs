@@ -5,6 +5,7 @@
 mod clock;
 mod coupled;
 mod decoupled;
+mod direct_change;
 mod frame_notes;
 mod physics;
 mod threads;
@@ -12,5 +13,6 @@ mod threads;
 pub use clock::Clock;
 pub use coupled::{Coupled, StepLimits};
 pub use decoupled::{Decoupled, DecoupledSettings, DriverError, Picture};
+pub use direct_change::ChangeError;
 pub use frame_notes::FrameNote;
 pub use threads::{Threads, ThreadsError};

@@ -47,13 +47,33 @@ pub(crate) struct Measurement {
     pub(crate) state_hash: String,
 }
 
-/// Steps `world` for `frames` frames. Reports each frame's number to `progress`.
-pub(crate) fn measure(
-    mut world: World,
-    (scene, frames, thread_count): (&str, u32, u16),
-    threads: &Threads,
-    progress: &(dyn Fn(u32) + Sync),
-) -> Measurement {
+impl StageTimes {
+    /// In the order of the stages.
+    pub(crate) const fn in_order(&self) -> [f64; Stage::ALL.len()] {
+        [
+            self.collisions,
+            self.velocities,
+            self.contact_graph,
+            self.contacts,
+            self.shock_propagation,
+            self.positions,
+        ]
+    }
+}
+
+/// What is measured, and with what.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run<'a> {
+    /// As it was typed.
+    pub(crate) scene: &'a str,
+    pub(crate) frames: u32,
+    pub(crate) thread_count: u16,
+    pub(crate) threads: &'a Threads,
+}
+
+/// Steps `world` for the frames of the run. Reports each frame's number to `progress`.
+pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Measurement {
+    let Run { scene, frames, thread_count, threads } = *run;
     memory::restart_peak();
     let stopwatch = if thread_count == 1 { Stopwatch::ThreadCpu } else { Stopwatch::Wall(Clock::system()) };
     let energy_start = energy::mechanical_j(&world);

@@ -5,6 +5,9 @@
 
 use std::time::Duration;
 
+use forerun_timeline::Change;
+
+use super::direct_change::{ChangeError, apply};
 use crate::dynamics::{StepReport, Unobserved, World};
 use crate::{Clock, Threads};
 
@@ -87,9 +90,12 @@ impl Coupled {
         &self.world
     }
 
-    /// The bodies and their states, for the user to change between two cycles.
-    pub fn world_mut(&mut self) -> &mut World {
-        &mut self.world
+    /// A change by the user, in force from the next cycle on. A body to be added takes the next free name.
+    ///
+    /// # Errors
+    /// When there is no such body, or a plain world cannot do it; then nothing changed.
+    pub fn change(&mut self, change: &Change) -> Result<(), ChangeError> {
+        apply(&mut self.world, change)
     }
 }
 

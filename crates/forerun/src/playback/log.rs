@@ -15,6 +15,8 @@ pub struct QueueRow {
     pub queue_min: u32,
     /// Most states that a body had ahead of the picture.
     pub queue_max: u32,
+    /// Bodies that had no true state for the display time, and were shown as they last were.
+    pub starved: u32,
     /// Most slices that an island of the displayed frame was cut into (the dissertation's return in time); 1 when none was.
     pub slices_max: u32,
     /// Shortest time step of the displayed frame: its length over `slices_max`. Seconds.
@@ -33,18 +35,19 @@ pub struct QueueRow {
 
 impl QueueRow {
     /// The header of `queue.csv`.
-    pub const HEADER: &str = "time_real_s,time_display_s,time_physics_s,queue_min,queue_max,slices_max,time_step_s,\
+    pub const HEADER: &str = "time_real_s,time_display_s,time_physics_s,queue_min,queue_max,starved,slices_max,time_step_s,\
                               areas_active,computed,recomputed,interval_ms,wait_ms";
 
     fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(
             out,
-            "{:.6},{:.6},{:.6},{},{},{},{:.6},{},{},{},{:.3},{:.3}",
+            "{:.6},{:.6},{:.6},{},{},{},{},{:.6},{},{},{},{:.3},{:.3}",
             self.time_real_s,
             self.time_display_s,
             self.time_physics_s,
             self.queue_min,
             self.queue_max,
+            self.starved,
             self.slices_max,
             self.time_step_s,
             self.areas_active,
@@ -76,7 +79,7 @@ mod tests {
         write_queue_csv(&[row, row], &mut out).expect("a Vec takes everything");
         let text = String::from_utf8(out).expect("digits and commas");
         let fields: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
-        assert_eq!(fields, [12, 12, 12]);
+        assert_eq!(fields, [13, 13, 13]);
         assert!(text.lines().nth(1).is_some_and(|line| line.starts_with("0.500000,0.000000,0.000000,0,100,")));
     }
 }

@@ -49,8 +49,7 @@ impl Report {
             seconds: rows.last().map_or(0.0, |row| row.time_real_s + 1.0 / fps),
             pictures: rows.len() as u64,
             late_pictures: count(later, |row| row.interval_ms > late_ms),
-            // The half nanosecond is for the rounding of time to seconds and back.
-            starved_pictures: count(rows, |row| delay_s(row) > 5e-10),
+            starved_pictures: count(rows, |row| row.starved > 0),
             longest_stall_ms: later.iter().map(|row| row.interval_ms).fold(0.0, f64::max),
             delay_max_s: delays.fold(0.0, f64::max),
             queue_min: later.iter().map(|row| row.queue_min).min().unwrap_or(0),
@@ -67,4 +66,34 @@ fn delay_s(row: &QueueRow) -> f64 {
 
 fn count(rows: &[QueueRow], test: impl Fn(&QueueRow) -> bool) -> u64 {
     rows.iter().filter(|row| test(row)).count() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn late_and_starved_pictures_are_counted_apart() {
+        let row = |time_real_s: f64, interval_ms: f64, shown_s: f64, starved: u32| QueueRow {
+            time_real_s,
+            interval_ms,
+            time_display_s: shown_s,
+            starved,
+            queue_min: 10 - starved,
+            queue_max: 100,
+            slices_max: 1,
+            recomputed: 3,
+            ..QueueRow::default()
+        };
+        let rows = [
+            QueueRow { queue_min: 0, ..row(0.0, 0.0, 0.0, 0) },
+            row(0.04, 40.0, 0.04, 0),
+            row(0.14, 100.0, 0.10, 2),
+            row(0.17, 30.0, 0.10, 2),
+        ];
+        let report = Report::new("s", "decoupled", 25.0, &rows);
+        assert_eq!((report.pictures, report.late_pictures, report.starved_pictures), (4, 1, 2));
+        assert!((report.delay_max_s - 0.07).abs() < 1e-12 && (report.longest_stall_ms - 100.0).abs() < 1e-12);
+        assert_eq!((report.queue_min, report.queue_max, report.recomputed), (8, 100, 12));
+    }
 }
