@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Once;
 
 use plotters::coord::Shift;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
@@ -108,12 +109,16 @@ fn draw_panel<DB: DrawingBackend>(
     for line in &panel.lines {
         let style = line.colour.stroke_width(2);
         let points = line.points.iter().copied();
-        let drawn = match line.stroke {
-            Stroke::Solid => chart.draw_series(LineSeries::new(points, style))?,
-            Stroke::Dashed => chart.draw_series(DashedLineSeries::new(points, 7, 5, style))?,
+        match line.stroke {
+            Stroke::Solid => chart
+                .draw_series(LineSeries::new(points, style))?
+                .label(&line.name)
+                .legend(move |at| PathElement::new(legend_ends(at), style)),
+            Stroke::Dashed => chart
+                .draw_series(DashedLineSeries::new(points, 7, 5, style))?
+                .label(&line.name)
+                .legend(move |at| DashedPathElement::new(legend_ends(at).into_iter(), 7, 5, style)),
         };
-        let stroke = line.stroke;
-        drawn.label(&line.name).legend(move |at| sample_of(at, style, stroke));
     }
     let position = match panel.legend {
         Legend::UpperLeft => SeriesLabelPosition::UpperLeft,
@@ -130,17 +135,9 @@ fn draw_panel<DB: DrawingBackend>(
         .draw()
 }
 
-/// A short piece of a line for the legend.
-fn sample_of<DB: DrawingBackend + 'static>(
-    (x, y): (i32, i32),
-    style: ShapeStyle,
-    stroke: Stroke,
-) -> DynElement<'static, DB, (i32, i32)> {
-    let ends = [(x, y), (x + 31, y)];
-    match stroke {
-        Stroke::Solid => PathElement::new(ends.to_vec(), style).into_dyn(),
-        Stroke::Dashed => DashedPathElement::new(ends.into_iter(), 7, 5, style).into_dyn(),
-    }
+/// A short piece of a line for the legend, from where plotters wants it.
+fn legend_ends((x, y): (i32, i32)) -> [(i32, i32); 2] {
+    [(x, y), (x + 31, y)]
 }
 
 /// The axes' ends: the largest values, rounded up so that the last tick has a number.

@@ -1,29 +1,34 @@
 //! Energy meter: mechanical energy and mean speed of the dynamic bodies.
 
 use forerun::dynamics::World;
-use forerun::{BodyState, Vec3};
+use forerun::{Body, BodyState, Vec3};
 
-/// Kinetic plus potential energy, heights against gravity measured from the origin. Joules.
+/// Kinetic plus potential energy, heights against gravity measured from the origin. Joules, summed in f64.
 pub(crate) fn mechanical_j(world: &World) -> f64 {
-    let gravity = world.environment.gravity.as_dvec3();
-    let of_body = |(body, state): (&forerun::Body, &BodyState)| {
+    let gravity = world.environment.gravity;
+    let of_body = |(body, state): (&Body, &BodyState)| {
         if !body.is_dynamic() {
             return 0.0;
         }
         let mass = 1.0 / f64::from(body.inverse_mass);
-        let local_spin = (state.rotation.conjugate() * state.angular_velocity).as_dvec3();
-        let inertia = body.inverse_inertia.as_dvec3().recip();
-        let kinetic = mass * state.velocity.as_dvec3().length_squared() + (local_spin * local_spin).dot(inertia);
-        0.5 * kinetic - mass * f64::from(body.gravity_scale) * gravity.dot(state.position.as_dvec3())
+        let spin = state.rotation.conjugate() * state.angular_velocity;
+        let moments = body.inverse_inertia.to_array().map(|inverse| 1.0 / f64::from(inverse));
+        let turning: f64 = (spin.to_array().iter().zip(moments)).map(|(w, i)| i * f64::from(*w).powi(2)).sum();
+        let moving = mass * dot(state.velocity, state.velocity);
+        0.5 * (moving + turning) - mass * f64::from(body.gravity_scale) * dot(gravity, state.position)
     };
     world.bodies().iter().zip(world.states()).map(of_body).sum()
+}
+
+fn dot(a: Vec3, b: Vec3) -> f64 {
+    a.to_array().iter().zip(b.to_array()).map(|(x, y)| f64::from(*x) * f64::from(y)).sum()
 }
 
 /// Mean speed of the centres of mass of the dynamic bodies. m/s.
 pub(crate) fn mean_speed(world: &World) -> f64 {
     let speeds: Vec<f64> = (world.bodies().iter().zip(world.states()))
         .filter(|(body, _)| body.is_dynamic())
-        .map(|(_, state)| f64::from(Vec3::length(state.velocity)))
+        .map(|(_, state)| f64::from(state.velocity.length()))
         .collect();
     if speeds.is_empty() { 0.0 } else { speeds.iter().sum::<f64>() / speeds.len() as f64 }
 }

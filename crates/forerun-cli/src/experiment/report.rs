@@ -47,13 +47,13 @@ pub(crate) fn markdown(plan: &Plan, outcomes: &[Outcome], note: &str) -> String 
         let _ = writeln!(page, "{note}");
     }
     page.push_str("\n| |");
-    outcomes.iter().for_each(|o| drop(write!(page, " {} |", o.label)));
+    outcomes.iter().for_each(|o| page.push_str(&format!(" {} |", o.label)));
     page.push_str("\n|---|");
     outcomes.iter().for_each(|_| page.push_str("---:|"));
     page.push('\n');
     for (name, cell) in ROWS {
         let _ = write!(page, "| {name} |");
-        outcomes.iter().for_each(|o| drop(write!(page, " {} |", cell(o))));
+        outcomes.iter().for_each(|o| page.push_str(&format!(" {} |", cell(o))));
         page.push('\n');
     }
     for Figure { file, title, .. } in plan.figures {
