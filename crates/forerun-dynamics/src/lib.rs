@@ -9,8 +9,11 @@
 pub mod body;
 pub mod bounds;
 pub mod broad_phase;
+mod lanes;
 pub mod narrow_phase;
+mod plan;
 pub mod settings;
+mod solver;
 pub mod stage;
 pub mod state;
 pub mod step;

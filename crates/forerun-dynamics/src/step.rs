@@ -1,7 +1,16 @@
 //! The step of a closed group of bodies: contacts in, next states out.
 
-use crate::narrow_phase::Contact;
-use crate::{Body, BodyId, BodyKind, BodyState, Environment, Observer, Stage};
+use rayon::prelude::*;
+
+use crate::narrow_phase::{Contact, find_contacts};
+use crate::plan::{Island, Plan, half_thickness, pack};
+use crate::solver::{Batch, fly};
+use crate::{Body, BodyId, BodyState, Environment, Observer, Stage};
+
+/// An overlap that a frame makes deeper by this part of the thinner body's half thickness is too deep.
+const DEEP_PART: f32 = 0.1;
+/// Or by this much, whichever is more. Metres.
+const DEEP_M: f32 = 0.01;
 
 /// A body of a group, at the frame that is to be advanced.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +41,9 @@ pub struct Group<'a> {
 /// What a step did. Degraded results are counted, not hidden.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepReport {
-    /// Islands with at least one contact.
+    /// Islands with at least one contact that were solved.
     pub islands: u32,
-    /// Contacts (manifolds) solved.
+    /// Contacts (manifolds) found.
     pub contacts: u32,
     /// Most slices that an island's frame was cut into; 1 when none was.
     pub slices_max: u32,
@@ -43,26 +52,237 @@ pub struct StepReport {
 }
 
 /// The states of the members one frame later, in the members' order.
+///
+/// Stage 1, collisions, is what made the group: swept bounds, pairs, contacts. The other five follow for each batch of islands.
 #[must_use]
 pub fn advance(
     group: &Group,
     environment: &Environment,
     observer: &mut dyn Observer,
 ) -> (Vec<BodyState>, StepReport) {
+    let plan = Plan::new(group, environment);
+    let mut next: Vec<BodyState> = group.members.iter().map(|m| m.state).collect();
     let dt = environment.settings.frame_seconds;
-    let next = group.members.iter().map(|m| fly(m.body, &m.state, environment, dt)).collect();
-    observer.after(Stage::Positions);
-    (next, StepReport { slices_max: 1, ..StepReport::default() })
+    for (i, member) in group.members.iter().enumerate() {
+        if plan.island_of[i] == Plan::NONE && !plan.resting[i] {
+            next[i] = fly(member.body, &member.state, environment, dt);
+        }
+    }
+    let mut report = StepReport {
+        islands: plan.islands.len() as u32,
+        contacts: group.contacts.len() as u32,
+        slices_max: 1,
+        quarantined: 0,
+    };
+    let mut slices: Vec<u32> = plan.islands.iter().map(|island| island.slices).collect();
+    let mut count = 1;
+    while count <= environment.settings.slices_max.max(1) {
+        let chosen: Vec<u32> = (0..slices.len() as u32).filter(|&i| slices[i as usize] == count).collect();
+        if !chosen.is_empty() {
+            report.slices_max = count;
+            let too_deep =
+                Slicer { group, environment, plan: &plan, count }.run(&chosen, &mut next, observer);
+            // The return in time: the frame of these islands is thrown away and done again in smaller parts.
+            for i in too_deep {
+                slices[i as usize] = count * 2;
+            }
+        }
+        count *= 2;
+    }
+    report.quarantined = quarantine(group, &mut next);
+    (next, report)
 }
 
-fn fly(body: &Body, state: &BodyState, environment: &Environment, dt: f32) -> BodyState {
-    if body.kind == BodyKind::Fixed {
-        return *state;
+/// The stages of one frame or slice for some batches; batches side by side, stages one after the other.
+fn solve(batches: &mut [Batch], observer: &mut dyn Observer) -> Vec<Vec<BodyState>> {
+    batches.par_iter_mut().for_each(Batch::integrate_velocities);
+    observer.after(Stage::Velocities);
+
+    batches.par_iter_mut().for_each(Batch::build_contact_graph);
+    observer.after(Stage::ContactGraph);
+
+    batches.par_iter_mut().for_each(Batch::resolve_contacts);
+    observer.after(Stage::Contacts);
+
+    batches.par_iter_mut().for_each(Batch::propagate_shock);
+    observer.after(Stage::ShockPropagation);
+
+    let next = batches.par_iter().map(Batch::integrate_positions).collect();
+    observer.after(Stage::Positions);
+    next
+}
+
+/// Does the frame of some islands in `count` slices, each with contacts of its own.
+struct Slicer<'a> {
+    group: &'a Group<'a>,
+    environment: &'a Environment,
+    plan: &'a Plan,
+    count: u32,
+}
+
+impl<'a> Slicer<'a> {
+    /// Writes the next states of the chosen islands, and names those that ended too deep and may still be cut finer.
+    fn run(&self, chosen: &[u32], next: &mut [BodyState], observer: &mut dyn Observer) -> Vec<u32> {
+        let mut environment = *self.environment;
+        environment.settings.frame_seconds /= self.count as f32;
+        let packed = pack(&self.plan.islands, chosen);
+        let mut too_deep = Vec::new();
+        if self.count == 1 {
+            let mut batches: Vec<Batch> = packed.iter().map(|b| self.batch(b, environment)).collect();
+            let solved = solve(&mut batches, observer);
+            for ((batch, islands), states) in batches.iter().zip(&packed).zip(solved) {
+                self.keep(batch, &states, next);
+                self.find_too_deep(batch, islands, &mut too_deep);
+            }
+            return too_deep;
+        }
+        let mut wanted = vec![false; self.plan.islands.len()];
+        for &i in chosen {
+            wanted[i as usize] = true;
+        }
+        let pairs = self.plan.pairs_of(&wanted, self.group);
+        let mut members: Vec<Vec<Member>> =
+            packed.iter().map(|b| self.members_with_pairs(b, &pairs)).collect();
+        for slice in 0..self.count {
+            let mut batches: Vec<Batch> = (members.iter().zip(&packed))
+                .map(|(m, islands)| self.detect(m, islands, &pairs, environment))
+                .collect();
+            observer.after(Stage::Collisions);
+            let solved = solve(&mut batches, observer);
+            for ((members, islands), (batch, states)) in
+                members.iter_mut().zip(&packed).zip(batches.iter().zip(solved))
+            {
+                for (member, state) in members.iter_mut().zip(&states) {
+                    // Rest is counted in whole frames.
+                    member.state = BodyState { rest: 0, ..*state };
+                }
+                if slice + 1 == self.count {
+                    let states: Vec<BodyState> = members.iter().map(|m| m.state).collect();
+                    self.keep(batch, &states, next);
+                }
+                if self.count < self.environment.settings.slices_max {
+                    self.find_too_deep(batch, islands, &mut too_deep);
+                }
+            }
+        }
+        too_deep.sort_unstable();
+        too_deep.dedup();
+        too_deep
     }
-    let mut next = *state;
-    if body.is_dynamic() {
-        next.velocity += environment.gravity * (body.gravity_scale * dt);
+
+    /// The islands as one batch, with the contacts of the group.
+    fn batch(&self, islands: &[u32], environment: Environment) -> Batch<'a> {
+        let mut indices: Vec<u32> = Vec::new();
+        let mut contacts: Vec<u32> = Vec::new();
+        for island in self.islands(islands) {
+            indices.extend(&island.members);
+            contacts.extend(&island.contacts);
+        }
+        indices.sort_unstable();
+        indices.dedup();
+        contacts.sort_unstable();
+        let members: Vec<Member> = indices.iter().map(|&i| self.group.members[i as usize]).collect();
+        let local = Local::new(&indices, self.group.members.len());
+        let contacts = (contacts.iter().map(|&k| self.group.contacts[k as usize]))
+            .map(|c| Contact { first: local.of(c.first), second: local.of(c.second), ..c })
+            .collect();
+        Batch::new(members, contacts, environment)
     }
-    next.position += (state.velocity + next.velocity) * (0.5 * dt);
-    next.canonical()
+
+    /// The members of some islands and all whom they may meet.
+    fn members_with_pairs(&self, islands: &[u32], pairs: &[Vec<(u32, u32)>]) -> Vec<Member<'a>> {
+        let mut indices: Vec<u32> = self.islands(islands).flat_map(|i| i.members.iter().copied()).collect();
+        indices.extend(islands.iter().flat_map(|&i| pairs[i as usize].iter().flat_map(|&(a, b)| [a, b])));
+        indices.sort_unstable();
+        indices.dedup();
+        indices.iter().map(|&i| self.group.members[i as usize]).collect()
+    }
+
+    /// A batch with contacts found anew.
+    fn detect(
+        &self,
+        members: &[Member<'a>],
+        islands: &[u32],
+        pairs: &[Vec<(u32, u32)>],
+        environment: Environment,
+    ) -> Batch<'a> {
+        let ids: Vec<BodyId> = members.iter().map(|m| m.id).collect();
+        let local = |i: u32| {
+            let id = self.group.members[i as usize].id;
+            ids.partition_point(|&other| other < id) as u32
+        };
+        let mut found: Vec<(u32, u32)> = islands
+            .iter()
+            .flat_map(|&i| pairs[i as usize].iter().map(|&(a, b)| (local(a), local(b))))
+            .collect();
+        found.sort_unstable();
+        let contacts = find_contacts(members, &found, &environment);
+        Batch::new(members.to_vec(), contacts, environment)
+    }
+
+    fn islands(&self, indices: &[u32]) -> impl Iterator<Item = &'a Island> {
+        let plan = self.plan;
+        indices.iter().map(move |&i| &plan.islands[i as usize]).collect::<Vec<_>>().into_iter()
+    }
+
+    /// Stores the states of the dynamic members.
+    fn keep(&self, batch: &Batch, states: &[BodyState], next: &mut [BodyState]) {
+        let mut at = 0;
+        for (member, state) in batch.members.iter().zip(states) {
+            at += self.group.members[at..].partition_point(|m| m.id < member.id);
+            if member.body.is_dynamic() {
+                next[at] = *state;
+            }
+        }
+    }
+
+    fn find_too_deep(&self, batch: &Batch, islands: &[u32], too_deep: &mut Vec<u32>) {
+        if self.environment.settings.slices_max <= self.count {
+            return;
+        }
+        for (contact, growth) in batch.contacts.iter().zip(batch.overlap_growth()) {
+            let (a, b) = (&batch.members[contact.first as usize], &batch.members[contact.second as usize]);
+            if growth > (DEEP_PART * half_thickness(a, b)).max(DEEP_M) {
+                let dynamic = if a.body.is_dynamic() { a.id } else { b.id };
+                let at = self.group.members.partition_point(|m| m.id < dynamic);
+                let island = self.plan.island_of[at];
+                debug_assert!(islands.contains(&island));
+                too_deep.push(island);
+            }
+        }
+        too_deep.sort_unstable();
+        too_deep.dedup();
+    }
+}
+
+/// From indices of a group to indices of a batch.
+struct Local {
+    of: Vec<u32>,
+}
+
+impl Local {
+    fn new(indices: &[u32], count: usize) -> Local {
+        let mut of = vec![0; count];
+        for (k, &i) in indices.iter().enumerate() {
+            of[i as usize] = k as u32;
+        }
+        Local { of }
+    }
+
+    fn of(&self, i: u32) -> u32 {
+        self.of[i as usize]
+    }
+}
+
+/// Stops bodies whose next state is not finite. Returns how many.
+fn quarantine(group: &Group, next: &mut [BodyState]) -> u32 {
+    let mut count = 0;
+    for (state, member) in next.iter_mut().zip(group.members) {
+        if !state.is_finite() {
+            let zero = forerun_geometry::Vec3::ZERO;
+            *state = BodyState { velocity: zero, angular_velocity: zero, rest: 0, ..member.state };
+            count += 1;
+        }
+    }
+    count
 }

@@ -48,3 +48,6 @@ pub struct Placed<'a> {
     /// How far it is about to move.
     pub motion: Motion,
 }
+
+/// Appends the manifolds of two shapes that come nearer than `margin` (metres).
+pub fn contact_manifolds(_first: &Placed, _second: &Placed, _margin: f32, _out: &mut Vec<Manifold>) {}

@@ -1,0 +1,235 @@
+//! Batch: islands that are solved together, and the stages that they go through.
+//!
+//! *Invariant:* the next states of an island do not depend on which other islands share its batch.
+
+use forerun_geometry::{Shape, Vec3};
+
+use super::blocks::{Block, arrange};
+use super::bodies::Bodies;
+use super::collisions::{Moving, resolve_collisions};
+use super::contact_graph::ContactGraph;
+use super::islands::Islands;
+use super::load::{Load, LoadPass};
+use super::positions::{Ending, moved, settle};
+use super::prepare::{Source, prepare};
+use super::shock::propagate_shock;
+use super::sweep::sweep;
+use super::velocities::integrate_velocities;
+use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
+use crate::lanes::Row;
+use crate::narrow_phase::Contact;
+use crate::{BodyKind, BodyState, Environment, Member};
+
+/// Some islands, with the bodies that do not yield but that they touch.
+pub(crate) struct Batch<'a> {
+    /// Sorted by id.
+    pub(crate) members: Vec<Member<'a>>,
+    /// In canonical order; indices into `members`.
+    pub(crate) contacts: Vec<Contact>,
+    /// `settings.frame_seconds` is the length of the slice.
+    pub(crate) environment: Environment,
+    bodies: Bodies,
+    dynamic: Vec<bool>,
+    islands: Islands,
+    graph: ContactGraph,
+    blocks: Vec<Block>,
+    spins: Vec<Vec3>,
+    bounces: bool,
+}
+
+impl<'a> Batch<'a> {
+    /// A batch at the start of its frame or slice.
+    pub(crate) fn new(
+        members: Vec<Member<'a>>,
+        contacts: Vec<Contact>,
+        environment: Environment,
+    ) -> Batch<'a> {
+        let dynamic: Vec<bool> = members.iter().map(|m| m.body.is_dynamic()).collect();
+        let ends = contacts.iter().map(|c| (c.first, c.second));
+        let islands = Islands::find(members.len(), |i| dynamic[i], ends);
+        let bounces = members.iter().any(|m| m.body.material.restitution > 0.0);
+        Batch {
+            members,
+            contacts,
+            environment,
+            bodies: Bodies::default(),
+            dynamic,
+            islands,
+            graph: ContactGraph::default(),
+            blocks: Vec::new(),
+            spins: Vec::new(),
+            bounces,
+        }
+    }
+
+    fn substep_seconds(&self) -> f32 {
+        self.environment.settings.frame_seconds / self.environment.settings.substeps as f32
+    }
+
+    /// Stage 2: springs, gyroscopic term, accelerations.
+    pub(crate) fn integrate_velocities(&mut self) {
+        self.bodies = Bodies::gather(&self.members, &self.environment);
+        self.spins =
+            integrate_velocities(&self.members, &mut self.bodies, self.environment.settings.frame_seconds);
+    }
+
+    /// Stage 3: levels, load, rows.
+    pub(crate) fn build_contact_graph(&mut self) {
+        let dynamic = &self.dynamic;
+        self.graph = ContactGraph::build(self.members.len(), |i| dynamic[i], &self.contacts);
+        self.blocks = arrange(self.members.len(), dynamic, &self.graph, &self.contacts);
+        let loads = self.loads();
+        let levels: Vec<u32> = (0..self.members.len()).map(|i| self.graph.level(i)).collect();
+        let gravity = self.environment.gravity;
+        let source = Source {
+            members: &self.members,
+            contacts: &self.contacts,
+            loads: &loads,
+            levels: &levels,
+            up: if gravity == Vec3::ZERO { Vec3::ZERO } else { -gravity.normalize() },
+            shock_yield: self.environment.settings.shock_yield,
+        };
+        prepare(&mut self.blocks, &self.bodies, &source);
+    }
+
+    fn loads(&self) -> Vec<Load> {
+        LoadPass {
+            members: &self.members,
+            contacts: &self.contacts,
+            graph: &self.graph,
+            environment: &self.environment,
+            substep_seconds: self.substep_seconds(),
+        }
+        .run()
+    }
+
+    /// Stage 4: substeps of bounces, gravity, warm start and sweeps.
+    pub(crate) fn resolve_contacts(&mut self) {
+        let h = self.substep_seconds();
+        let settings = self.environment.settings;
+        let driven = self.driven();
+        let guard = EnergyGuard { islands: &self.islands, dynamic: &self.dynamic, driven: &driven };
+        let mut kicks: Vec<Row> = self.bodies.accelerations.iter().map(|a| Row(a.0.map(|x| x * h))).collect();
+        kicks.push(Row::default());
+        let mut before = Vec::new();
+        let (blocks, bodies) = (&mut self.blocks, &mut self.bodies);
+        for substep in 0..settings.substeps {
+            if self.bounces {
+                let mut moving = Moving {
+                    velocities: &mut bodies.velocities,
+                    displacements: &bodies.displacements,
+                    kicks: &kicks,
+                    substep_seconds: h,
+                };
+                resolve_collisions(blocks, &mut moving);
+            }
+            for (velocity, kick) in bodies.velocities.iter_mut().zip(&kicks) {
+                for k in 0..6 {
+                    velocity.0[k] += kick.0[k];
+                }
+            }
+            if substep == 1 {
+                remove_momentum(blocks);
+            }
+            before.clone_from(&bodies.velocities);
+            apply_impulses(blocks, &mut bodies.velocities);
+            let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
+            guard.check(blocks, &before, &mut bodies.velocities, guess);
+            let sweeps = if substep == 0 { settings.first_sweeps } else { 1 };
+            for _ in 0..sweeps {
+                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
+            }
+            guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
+            displace(bodies, &before, &kicks, h);
+            sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
+        }
+    }
+
+    /// Islands that a moving kinematic body touches.
+    fn driven(&self) -> Vec<bool> {
+        let mut driven = vec![false; self.members.len()];
+        let drives = |i: u32| {
+            let m = &self.members[i as usize];
+            m.body.kind == BodyKind::Kinematic
+                && (m.state.velocity != Vec3::ZERO || m.state.angular_velocity != Vec3::ZERO)
+        };
+        for c in &self.contacts {
+            if drives(c.first) {
+                driven[self.islands.root(c.second as usize)] = true;
+            }
+            if drives(c.second) {
+                driven[self.islands.root(c.first as usize)] = true;
+            }
+        }
+        driven
+    }
+
+    /// Stage 5: remaining overlap is pushed out, level by level.
+    pub(crate) fn propagate_shock(&mut self) {
+        let settings = self.environment.settings;
+        let push_max = settings.recovery_speed_max * settings.frame_seconds;
+        for _ in 0..self.pushes() {
+            propagate_shock(&self.blocks, &mut self.bodies.displacements, &settings, push_max);
+        }
+    }
+
+    /// Meshes overlap in many points at once and need a second pass. Mesh islands have batches of their own.
+    fn pushes(&self) -> usize {
+        if self.members.iter().any(|m| m.body.is_dynamic() && is_mesh(&m.body.shape)) { 2 } else { 1 }
+    }
+
+    /// Stage 6: new states, in the order of the members.
+    pub(crate) fn integrate_positions(&self) -> Vec<BodyState> {
+        let endings = self.endings();
+        let mut next: Vec<BodyState> = (self.members.iter().enumerate())
+            .map(|(i, m)| moved(m, &self.bodies, i, &endings[i], &self.environment))
+            .collect();
+        settle(&self.members, &mut next, &endings, &self.islands, &self.environment);
+        next
+    }
+
+    fn endings(&self) -> Vec<Ending> {
+        let mut endings: Vec<Ending> = self.spins.iter().map(|&spin| Ending { spin, overlap: 0.0 }).collect();
+        for c in &self.contacts {
+            let deepest = deepest(c);
+            for i in [c.first as usize, c.second as usize] {
+                endings[i].overlap = endings[i].overlap.max(deepest);
+            }
+        }
+        endings
+    }
+
+    /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
+    pub(crate) fn overlap_growth(&self) -> Vec<f32> {
+        let mut growth = vec![0.0; self.contacts.len()];
+        for block in &self.blocks {
+            for (contact, deeper) in block.overlap_growth(&self.bodies.displacements) {
+                growth[contact] = deeper;
+            }
+        }
+        growth
+    }
+}
+
+/// Whether contacts with the shape come from a distance field.
+pub(crate) fn is_mesh(shape: &Shape) -> bool {
+    matches!(shape, Shape::Mesh(_))
+}
+
+/// Deepest overlap of a contact; 0 when it is apart. Metres.
+fn deepest(contact: &Contact) -> f32 {
+    let m = &contact.manifold;
+    m.points[..m.count as usize].iter().fold(0.0, |deepest, p| deepest.max(-p.separation))
+}
+
+/// Moves the bodies by their velocities for one substep. A body that no impulse reached flies its parabola; one that was pushed moves as the
+/// contacts were solved, with its new velocity.
+fn displace(bodies: &mut Bodies, before: &[Row], kicks: &[Row], h: f32) {
+    let rows = bodies.displacements.iter_mut().zip(&bodies.velocities).zip(before.iter().zip(kicks));
+    for ((displacement, velocity), (free, kick)) in rows {
+        let flies = if velocity == free { 0.5 } else { 0.0 };
+        for k in 0..6 {
+            displacement.0[k] += h * (velocity.0[k] - flies * kick.0[k]);
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! Blocks: contacts laid out eight abreast.
+//!
+//! Contacts are ordered by level, then by colour: within a colour no dynamic body appears twice, so that the lanes of a block never write the
+//! same body. The colour of a contact depends on its island alone; which lane it lands in does not change its result.
+
+use super::contact_graph::ContactGraph;
+use crate::lanes::{F8, LANES, V8};
+use crate::narrow_phase::Contact;
+
+/// Padding: a lane without a contact.
+pub(crate) const NO_CONTACT: u32 = u32::MAX;
+
+/// Colours within a level. Contacts that find no free colour get a block each.
+const COLOURS: usize = 64;
+
+/// One contact point in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointRow {
+    pub(crate) normal: V8,
+    /// Mass-scaled angular parts of the Jacobian.
+    pub(crate) first: V8,
+    pub(crate) second: V8,
+    /// 1 / (J Jᵀ); 0 where there is no point.
+    pub(crate) inverse_k: F8,
+    /// Separation at the start of the frame.
+    pub(crate) separation: F8,
+    /// Normal impulse of the running substep.
+    pub(crate) impulse: F8,
+}
+
+/// The mean of a contact's points as one row: converges faster than the points alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CentreRow {
+    pub(crate) normal: V8,
+    pub(crate) first: V8,
+    pub(crate) second: V8,
+    pub(crate) inverse_k: F8,
+    pub(crate) inverse_count: F8,
+}
+
+/// Friction of a contact: two tangents and the twist about the normal, at the mean point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrictionRows {
+    pub(crate) tangents: [V8; 2],
+    pub(crate) first: [V8; 2],
+    pub(crate) second: [V8; 2],
+    /// Inverse of the 2 x 2 effective mass matrix: 11, 12, 22.
+    pub(crate) inverse_k: [F8; 3],
+    pub(crate) impulses: [F8; 2],
+    pub(crate) twist_first: V8,
+    pub(crate) twist_second: V8,
+    pub(crate) twist_inverse_k: F8,
+    pub(crate) twist_impulse: F8,
+    /// Mean distance of the points from their centre.
+    pub(crate) radius: F8,
+    pub(crate) static_coefficient: F8,
+    pub(crate) kinetic_coefficient: F8,
+}
+
+/// The part of the first guess that is momentum: it is taken off before the second substep.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Momentum {
+    pub(crate) points: [F8; 4],
+    pub(crate) tangents: [F8; 2],
+    pub(crate) twist: F8,
+}
+
+/// Eight contacts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Block {
+    pub(crate) first: [u32; LANES],
+    pub(crate) second: [u32; LANES],
+    /// Index of the contact, or [`NO_CONTACT`].
+    pub(crate) source: [u32; LANES],
+    pub(crate) first_scale: F8,
+    pub(crate) second_scale: F8,
+    /// 1 where impulses move the body, else 0.
+    pub(crate) first_answers: F8,
+    pub(crate) second_answers: F8,
+    /// How much of the push out of overlap each side takes; less for the lower one.
+    pub(crate) first_yields: F8,
+    pub(crate) second_yields: F8,
+    pub(crate) points: [PointRow; 4],
+    pub(crate) centre: CentreRow,
+    pub(crate) friction: FrictionRows,
+    pub(crate) restitution: F8,
+    pub(crate) momentum: Momentum,
+}
+
+impl Block {
+    /// A block without contacts: every lane is the dummy body against itself.
+    pub(crate) fn empty(dummy: u32) -> Block {
+        let (z, v) = (F8::ZERO, V8::ZERO);
+        let point =
+            PointRow { normal: v, first: v, second: v, inverse_k: z, separation: F8::splat(1e6), impulse: z };
+        Block {
+            first: [dummy; LANES],
+            second: [dummy; LANES],
+            source: [NO_CONTACT; LANES],
+            first_scale: z,
+            second_scale: z,
+            first_answers: z,
+            second_answers: z,
+            first_yields: z,
+            second_yields: z,
+            points: [point; 4],
+            centre: CentreRow { normal: v, first: v, second: v, inverse_k: z, inverse_count: z },
+            friction: FrictionRows {
+                tangents: [v; 2],
+                first: [v; 2],
+                second: [v; 2],
+                inverse_k: [z; 3],
+                impulses: [z; 2],
+                twist_first: v,
+                twist_second: v,
+                twist_inverse_k: z,
+                twist_impulse: z,
+                radius: z,
+                static_coefficient: z,
+                kinetic_coefficient: z,
+            },
+            restitution: z,
+            momentum: Momentum { points: [z; 4], tangents: [z; 2], twist: z },
+        }
+    }
+}
+
+/// The blocks of all contacts in the order in which they are solved; only indices are filled in.
+pub(crate) fn arrange(
+    count: usize,
+    yields: &[bool],
+    graph: &ContactGraph,
+    contacts: &[Contact],
+) -> Vec<Block> {
+    let by_level = sorted_by_level(graph, contacts);
+    let mut colouring = Colouring { stamp: vec![u32::MAX; count], used: vec![0; count] };
+    let mut blocks = Vec::with_capacity(contacts.len() / 4 + 8);
+    let mut colours = Vec::new();
+    let mut rest = by_level.as_slice();
+    while let Some(&head) = rest.first() {
+        let level = graph.contact_level(&contacts[head as usize]);
+        let length = rest.partition_point(|&k| graph.contact_level(&contacts[k as usize]) == level);
+        let (here, after) = rest.split_at(length);
+        colours.clear();
+        colours.extend(here.iter().map(|&k| colouring.colour(level, &contacts[k as usize], yields)));
+        place(here, &colours, contacts, count as u32, &mut blocks);
+        rest = after;
+    }
+    blocks
+}
+
+/// Indices of the contacts by level; those of one level in their own order.
+fn sorted_by_level(graph: &ContactGraph, contacts: &[Contact]) -> Vec<u32> {
+    let levels: Vec<u32> = contacts.iter().map(|c| graph.contact_level(c)).collect();
+    let top = levels.iter().copied().max().unwrap_or(0) as usize;
+    let mut starts = vec![0u32; top + 2];
+    for &l in &levels {
+        starts[l as usize + 1] += 1;
+    }
+    for l in 0..=top {
+        starts[l + 1] += starts[l];
+    }
+    let mut order = vec![0; contacts.len()];
+    for (k, &l) in levels.iter().enumerate() {
+        order[starts[l as usize] as usize] = k as u32;
+        starts[l as usize] += 1;
+    }
+    order
+}
+
+/// Greedy colours of one level after the other.
+struct Colouring {
+    /// The level for which `used` is valid.
+    stamp: Vec<u32>,
+    used: Vec<u64>,
+}
+
+impl Colouring {
+    fn colour(&mut self, level: u32, contact: &Contact, yields: &[bool]) -> u8 {
+        let ends = [contact.first as usize, contact.second as usize];
+        let mut used = 0;
+        for i in ends.into_iter().filter(|&i| yields[i]) {
+            if self.stamp[i] != level {
+                self.stamp[i] = level;
+                self.used[i] = 0;
+            }
+            used |= self.used[i];
+        }
+        let colour = (!used).trailing_zeros().min(COLOURS as u32 - 1) as u8;
+        for i in ends.into_iter().filter(|&i| yields[i]) {
+            self.used[i] |= 1 << colour;
+        }
+        colour
+    }
+}
+
+/// Puts the contacts of one level into blocks, colour by colour.
+fn place(here: &[u32], colours: &[u8], contacts: &[Contact], dummy: u32, blocks: &mut Vec<Block>) {
+    const OVERFLOW: usize = COLOURS - 1;
+    let mut count = [0usize; COLOURS];
+    for &c in colours {
+        count[c as usize] += 1;
+    }
+    let mut base = [0usize; COLOURS];
+    let mut end = blocks.len();
+    for c in 0..COLOURS {
+        base[c] = end;
+        end += if c == OVERFLOW { count[c] } else { count[c].div_ceil(LANES) };
+    }
+    blocks.resize(end, Block::empty(dummy));
+    let mut filled = [0usize; COLOURS];
+    for (&k, &c) in here.iter().zip(colours) {
+        let c = c as usize;
+        let (step, lane) =
+            if c == OVERFLOW { (filled[c], 0) } else { (filled[c] / LANES, filled[c] % LANES) };
+        filled[c] += 1;
+        let block = &mut blocks[base[c] + step];
+        let contact = &contacts[k as usize];
+        block.first[lane] = contact.first;
+        block.second[lane] = contact.second;
+        block.source[lane] = k;
+    }
+}

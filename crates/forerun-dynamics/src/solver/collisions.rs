@@ -1,0 +1,103 @@
+//! Collisions: impulses with restitution on the velocities before gravity (Guendelman et al. 2003, section 7; dissertation 2.4.4).
+//!
+//! A contact collides when it approaches and will close within the substep. A body at rest has no velocity before gravity, so that it
+//! does not bounce, whatever its restitution: there is no threshold speed.
+
+use super::blocks::Block;
+use super::sweep::{Sides, friction};
+use crate::lanes::{F8, Row, dispatched};
+
+/// A collision may cause the next one within the same substep (a row of balls), at most so many in a row.
+const COLLISION_ROUNDS: usize = 4;
+/// Rounds over the points of one contact: a flat landing bounces flat.
+const POINT_ROUNDS: usize = 2;
+
+/// Velocities and displacements of the bodies, and what the substep will add.
+pub(crate) struct Moving<'a> {
+    pub(crate) velocities: &'a mut [Row],
+    pub(crate) displacements: &'a [Row],
+    /// Mass-scaled change of velocity that gravity and forces will make in the substep.
+    pub(crate) kicks: &'a [Row],
+    pub(crate) substep_seconds: f32,
+}
+
+dispatched! {
+    /// Bounces every contact that collides in this substep.
+    pub(crate) fn resolve_collisions(blocks: &mut [Block], moving: &mut Moving) {
+        for _ in 0..COLLISION_ROUNDS {
+            let mut any = false;
+            for block in blocks.iter_mut() {
+                if block.restitution.gt(F8::ZERO).any() {
+                    any |= collide(block, moving);
+                }
+            }
+            if !any {
+                break;
+            }
+        }
+    }
+}
+
+/// Returns whether any contact of the block collided.
+#[inline(always)]
+fn collide(block: &mut Block, moving: &mut Moving) -> bool {
+    let mut v = Sides::gather(block, moving.velocities);
+    let moved = Sides::gather(block, moving.displacements);
+    let kick = Sides::gather(block, moving.kicks);
+    let h = F8::splat(moving.substep_seconds);
+    let mut target = [F8::ZERO; 4];
+    let mut hits = [F8::ZERO; 4];
+    let (mut all, mut target_sum, mut any) = (F8::ONE, F8::ZERO, F8::ZERO);
+    for q in 0..4 {
+        let point = &block.points[q];
+        let row = point.jacobian();
+        let separation = point.separation + moved.along(block, &row);
+        let speed = v.along(block, &row);
+        let ahead = separation + h * (speed + kick.along(block, &row));
+        let is_point = point.inverse_k.gt(F8::ZERO);
+        let hit = is_point & speed.lt(F8::ZERO) & ahead.lt(F8::ZERO) & block.restitution.gt(F8::ZERO);
+        hits[q] = hit.select(F8::ONE, F8::ZERO);
+        target[q] = -(block.restitution * speed);
+        all = is_point.select(all.min(hits[q]), all);
+        any = any.max(hits[q]);
+        target_sum += is_point.select(target[q], F8::ZERO);
+    }
+    if !any.gt(F8::ZERO).any() {
+        return false;
+    }
+    let sum = bounce(block, &mut v, &hits, &target, target_sum, all);
+    // Friction of the collision alone: the impulses of the contacts are kept apart.
+    let (tangents, twist) = (block.friction.impulses, block.friction.twist_impulse);
+    block.friction.impulses = [F8::ZERO; 2];
+    block.friction.twist_impulse = F8::ZERO;
+    friction(block, &mut v, sum);
+    block.friction.impulses = tangents;
+    block.friction.twist_impulse = twist;
+    v.scatter(block, moving.velocities);
+    true
+}
+
+/// Normal impulses towards the target speeds. Returns their sum.
+#[inline(always)]
+fn bounce(block: &Block, v: &mut Sides, hits: &[F8; 4], target: &[F8; 4], target_sum: F8, all: F8) -> F8 {
+    let row = block.centre_jacobian();
+    let centre = &block.centre;
+    let lacking = target_sum * centre.inverse_count - v.along(block, &row);
+    let flat = all.gt(F8::splat(0.5)).select((centre.inverse_k * lacking).max(F8::ZERO), F8::ZERO);
+    v.apply(block, &row, flat);
+    let mut impulses = [F8::ZERO; 4];
+    for q in 0..4 {
+        impulses[q] = hits[q] * flat * centre.inverse_count;
+    }
+    for _ in 0..POINT_ROUNDS {
+        for q in 0..4 {
+            let point = &block.points[q];
+            let row = point.jacobian();
+            let change = hits[q] * point.inverse_k * (target[q] - v.along(block, &row));
+            let impulse = (impulses[q] + change).max(F8::ZERO);
+            v.apply(block, &row, impulse - impulses[q]);
+            impulses[q] = impulse;
+        }
+    }
+    impulses[0] + impulses[1] + impulses[2] + impulses[3]
+}

@@ -1,0 +1,265 @@
+//! Load: what each contact has to carry, from the bodies above it; a first guess that needs no memory of the last frame.
+//!
+//! From the top of the contact graph down, every body spreads its weight, and the momentum that its supports must take, over the points below
+//! it: an affine pressure whose sum and moments match. It is the dual of shock propagation (Guendelman et al. 2003, section 8): forces
+//! travel down instead of velocities up. Only a guess: the sweeps may lower or raise it.
+
+use forerun_geometry::Vec3;
+
+use super::contact_graph::{ContactGraph, Link, TOUCH_M};
+use crate::narrow_phase::Contact;
+use crate::{Environment, Member};
+
+/// Sinking slower than this is noise, not momentum. m/s
+const DEAD_SPEED: f32 = 0.1;
+/// A support's normal must rise by at least this.
+const RISE_MIN: f32 = 0.3;
+/// Points that would have to pull are dropped and the pressure is fitted again, at most this often.
+const REFITS: usize = 4;
+
+/// Normal impulses of a contact's points in the first substep.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Load {
+    /// With momentum.
+    pub(crate) total: [f32; 4],
+    /// Weight alone: what the later substeps start from.
+    pub(crate) weight: [f32; 4],
+}
+
+/// A vertical load and its first moments about the body's centre.
+#[derive(Clone, Copy, Debug, Default)]
+struct Carried {
+    sum: f32,
+    moment_1: f32,
+    moment_2: f32,
+}
+
+impl Carried {
+    fn add(&mut self, force: f32, x: f32, z: f32) {
+        self.sum += force;
+        self.moment_1 += force * x;
+        self.moment_2 += force * z;
+    }
+}
+
+/// A contact point below a body.
+#[derive(Clone, Copy, Debug)]
+struct Support {
+    /// Horizontal place relative to the body's centre.
+    x: f32,
+    z: f32,
+    contact: u32,
+    point: u32,
+    below: u32,
+    rise: f32,
+    /// 1 in full touch, 0 at [`TOUCH_M`].
+    weight: f32,
+    dropped: bool,
+    total: f32,
+    still: f32,
+}
+
+/// The vertical and two horizontal directions.
+struct Compass {
+    up: Vec3,
+    one: Vec3,
+    two: Vec3,
+}
+
+impl Compass {
+    fn new(gravity: Vec3) -> Option<Compass> {
+        let length = gravity.length();
+        if length <= 0.0 {
+            return None;
+        }
+        let up = gravity * (-1.0 / length);
+        // x for the usual gravity; any direction across otherwise.
+        let across = if up.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
+        let one = (across - up * across.dot(up)).normalize();
+        Some(Compass { up, one, two: one.cross(up) })
+    }
+}
+
+pub(crate) struct LoadPass<'a> {
+    pub(crate) members: &'a [Member<'a>],
+    pub(crate) contacts: &'a [Contact],
+    pub(crate) graph: &'a ContactGraph,
+    pub(crate) environment: &'a Environment,
+    pub(crate) substep_seconds: f32,
+}
+
+impl LoadPass<'_> {
+    /// The load of every contact.
+    pub(crate) fn run(&self) -> Vec<Load> {
+        let mut loads = vec![Load::default(); self.contacts.len()];
+        let Some(compass) = Compass::new(self.environment.gravity) else {
+            return loads;
+        };
+        let mut total = vec![Carried::default(); self.members.len()];
+        let mut still = vec![Carried::default(); self.members.len()];
+        self.weigh(&compass, &mut total, &mut still);
+        let mut supports = Vec::with_capacity(32);
+        for &i in self.graph.order.iter().rev() {
+            let i = i as usize;
+            if !self.members[i].body.is_dynamic() {
+                continue;
+            }
+            self.supports_of(i, &compass, &mut supports);
+            if supports.is_empty() {
+                continue;
+            }
+            let radius = self.members[i].body.radius;
+            fit(&mut supports, &total[i], &still[i], (1e-6 * radius * radius).max(1e-12));
+            for s in supports.iter().filter(|s| !s.dropped) {
+                let (c, p, j) = (s.contact as usize, s.point as usize, s.below as usize);
+                loads[c].total[p] = s.total * s.rise;
+                loads[c].weight[p] = s.still * s.rise;
+                let offset = self.members[i].state.position - self.members[j].state.position;
+                let (x, z) = (s.x + offset.dot(compass.one), s.z + offset.dot(compass.two));
+                total[j].add(s.total, x, z);
+                still[j].add(s.still, x, z);
+            }
+        }
+        loads
+    }
+
+    /// Own weight of each body, and the momentum that its supports must take from it.
+    fn weigh(&self, compass: &Compass, total: &mut [Carried], still: &mut [Carried]) {
+        let h = self.substep_seconds;
+        let mut allowed = vec![0.0f32; self.members.len()];
+        for &i in &self.graph.order {
+            let i = i as usize;
+            let member = &self.members[i];
+            let (body, state) = (member.body, &member.state);
+            let sinking = -state.velocity.dot(compass.up);
+            if !body.is_dynamic() {
+                allowed[i] = sinking;
+                continue;
+            }
+            let fall = (-self.environment.gravity.dot(compass.up) * body.gravity_scale * h).max(0.0);
+            let mass = 1.0 / body.inverse_mass;
+            still[i].sum = mass * fall;
+            total[i].sum = mass * fall;
+            let mut lowest = f32::MAX;
+            for (link, point) in self.points_below(i, compass) {
+                let separation = self.contacts[link.contact as usize].manifold.points[point].separation;
+                lowest = lowest.min(allowed[link.body as usize] + separation.max(0.0) / h);
+            }
+            allowed[i] = if lowest < f32::MAX { lowest } else { 1e9 };
+            if lowest == f32::MAX {
+                continue;
+            }
+            total[i].sum = mass * (fall + shrink(sinking - lowest)).max(0.0);
+            let spin = state.angular_velocity.length() * body.radius;
+            if spin > DEAD_SPEED {
+                // A vertical force f at (x, z) turns by (-z f, 0, x f): the supports must take -L.
+                let axes = state.pose().axes();
+                let l = axes * ((axes.transpose() * state.angular_velocity) / body.inverse_inertia);
+                let part = 1.0 - DEAD_SPEED / spin;
+                total[i].moment_1 -= l.dot(compass.two) * part;
+                total[i].moment_2 += l.dot(compass.one) * part;
+            }
+        }
+    }
+
+    /// The points on which a body may rest: of contacts with lower bodies, near enough, rising.
+    fn points_below<'b>(
+        &'b self,
+        i: usize,
+        compass: &'b Compass,
+    ) -> impl Iterator<Item = (&'b Link, usize)> + 'b {
+        let level = self.graph.level(i);
+        self.graph.links(i).iter().filter(move |link| self.graph.level(link.body as usize) < level).flat_map(
+            move |link| {
+                let contact = &self.contacts[link.contact as usize];
+                (0..contact.manifold.count as usize)
+                    .filter(move |&p| contact.manifold.points[p].separation < TOUCH_M)
+                    .filter(move |&p| self.rise(contact, p, i, compass) >= RISE_MIN)
+                    .map(move |p| (link, p))
+            },
+        )
+    }
+
+    fn rise(&self, contact: &Contact, point: usize, upper: usize, compass: &Compass) -> f32 {
+        let rise = contact.manifold.points[point].normal.dot(compass.up);
+        if contact.second as usize == upper { rise } else { -rise }
+    }
+
+    fn supports_of(&self, i: usize, compass: &Compass, out: &mut Vec<Support>) {
+        out.clear();
+        let centre = self.members[i].state.position;
+        for (link, p) in self.points_below(i, compass) {
+            let contact = &self.contacts[link.contact as usize];
+            let point = &contact.manifold.points[p];
+            let r = point.position - centre;
+            out.push(Support {
+                x: r.dot(compass.one),
+                z: r.dot(compass.two),
+                contact: link.contact,
+                point: p as u32,
+                below: link.body,
+                rise: self.rise(contact, p, i, compass),
+                weight: ((TOUCH_M - point.separation) / TOUCH_M).clamp(1e-4, 1.0),
+                dropped: false,
+                total: 0.0,
+                still: 0.0,
+            });
+        }
+    }
+}
+
+/// Soft threshold: small speeds count as nothing, larger ones for the excess.
+fn shrink(speed: f32) -> f32 {
+    if speed > DEAD_SPEED {
+        speed - DEAD_SPEED
+    } else if speed < -DEAD_SPEED {
+        speed + DEAD_SPEED
+    } else {
+        0.0
+    }
+}
+
+/// Spreads the load over the supports as an affine function of the place, without pulling.
+fn fit(supports: &mut [Support], total: &Carried, still: &Carried, ridge: f32) {
+    for round in 0..REFITS {
+        let active = || supports.iter().filter(|s| !s.dropped);
+        let weight: f32 = active().map(|s| s.weight).sum();
+        let cx = active().map(|s| s.x * s.weight).sum::<f32>() / weight;
+        let cz = active().map(|s| s.z * s.weight).sum::<f32>() / weight;
+        let (mut xx, mut xz, mut zz) = (ridge * weight, 0.0, ridge * weight);
+        for s in active() {
+            let (x, z) = (s.x - cx, s.z - cz);
+            xx += s.weight * x * x;
+            xz += s.weight * x * z;
+            zz += s.weight * z * z;
+        }
+        let inverse = 1.0 / (xx * zz - xz * xz);
+        let slopes = |load: &Carried| {
+            let (m1, m2) = (load.moment_1 - load.sum * cx, load.moment_2 - load.sum * cz);
+            ((m1 * zz - m2 * xz) * inverse, (m2 * xx - m1 * xz) * inverse)
+        };
+        let (tx, tz) = slopes(total);
+        let (sx, sz) = slopes(still);
+        let mut pulls = false;
+        for s in supports.iter_mut().filter(|s| !s.dropped) {
+            let (x, z) = (s.x - cx, s.z - cz);
+            s.still = s.weight * (still.sum / weight + x * sx + z * sz);
+            s.total = s.weight * (total.sum / weight + x * tx + z * tz);
+            if s.total < 0.0 {
+                s.dropped = true;
+                pulls = true;
+            }
+        }
+        if !pulls || round + 1 == REFITS || supports.iter().all(|s| s.dropped) {
+            break;
+        }
+    }
+    let kept = || supports.iter().filter(|s| !s.dropped);
+    let scale = |wanted: f32, got: f32| if got > 0.0 { wanted / got } else { 0.0 };
+    let of_total = scale(total.sum, kept().map(|s| s.total).sum());
+    let of_still = scale(still.sum, kept().map(|s| s.still.max(0.0)).sum());
+    for s in supports.iter_mut() {
+        s.total *= of_total;
+        s.still = s.still.max(0.0) * of_still;
+    }
+}

@@ -1,0 +1,24 @@
+//! The solver: one batch of islands through the stages of a frame, or of a slice of one.
+
+mod blocks;
+mod bodies;
+mod collisions;
+mod contact_graph;
+mod flight;
+mod islands;
+mod load;
+mod overlap;
+mod positions;
+mod prepare;
+mod rotation;
+mod shock;
+mod spring;
+mod sweep;
+mod velocities;
+mod warm_start;
+
+mod batch;
+
+pub(crate) use batch::{Batch, is_mesh};
+pub(crate) use flight::fly;
+pub(crate) use islands::Islands;

@@ -1,0 +1,115 @@
+//! Positions: new poses from the displacements, angular momentum carried over, and rest.
+
+use forerun_geometry::{Mat3, Vec3};
+
+use super::bodies::{Bodies, Scale};
+use super::flight::fly;
+use super::islands::Islands;
+use super::rotation::{angular_momentum, is_isotropic, times_inverse_inertia, turned};
+use crate::{BodyState, Environment, Member};
+
+/// What the end of a frame needs to know about one body besides its rows.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Ending {
+    /// The angular velocity with which the contacts started. rad/s
+    pub(crate) spin: Vec3,
+    /// Deepest overlap with anybody at the start of the frame. Metres.
+    pub(crate) overlap: f32,
+}
+
+/// The state that a body has moved to, whether it was at rest or not.
+pub(crate) fn moved(
+    member: &Member,
+    bodies: &Bodies,
+    i: usize,
+    ending: &Ending,
+    environment: &Environment,
+) -> BodyState {
+    if !member.body.is_dynamic() {
+        return fly(member.body, &member.state, environment, environment.settings.frame_seconds);
+    }
+    let scale = Scale::of(member);
+    let (velocity, spin) = scale.from_row(&bodies.velocities[i]);
+    let (shift, rotation) = scale.from_row(&bodies.displacements[i]);
+    let turned_to = turned(member.state.rotation, rotation);
+    let angular_velocity = carried(member, &scale.axes, ending.spin, spin, Mat3::from_quat(turned_to));
+    BodyState {
+        position: member.state.position + shift,
+        rotation: turned_to,
+        velocity,
+        angular_velocity,
+        rest: member.state.rest,
+    }
+    .canonical()
+}
+
+/// The angular velocity at the end of the frame: the momentum of the start plus what contacts and torques added, in the new orientation.
+fn carried(member: &Member, axes: &Mat3, start: Vec3, end: Vec3, turned: Mat3) -> Vec3 {
+    let inverse_inertia = member.body.inverse_inertia;
+    if is_isotropic(inverse_inertia) {
+        return end;
+    }
+    let before = angular_momentum(axes, inverse_inertia, member.state.angular_velocity);
+    let added = angular_momentum(axes, inverse_inertia, end - start);
+    times_inverse_inertia(&turned, inverse_inertia, before + added)
+}
+
+/// Rest is part of the state. A body that was quiet for `rest_frames` frames keeps its pose and no velocity, and is still solved: when its support
+/// goes, it moves. One more than `rest_frames` says that the whole island was so for a frame: a fixpoint that need not be solved.
+pub(crate) fn settle(
+    members: &[Member],
+    next: &mut [BodyState],
+    endings: &[Ending],
+    islands: &Islands,
+    environment: &Environment,
+) {
+    let settings = &environment.settings;
+    if settings.rest_frames == 0 {
+        next.iter_mut().for_each(|state| state.rest = 0);
+        return;
+    }
+    let full = settings.rest_frames;
+    let mut fixpoint = vec![true; members.len()];
+    for (i, member) in members.iter().enumerate() {
+        if !member.body.is_dynamic() {
+            continue;
+        }
+        let calm = quiet(member, &next[i], environment);
+        let before = member.state.rest.min(full);
+        let shallow = endings[i].overlap < 2.0 * settings.overlap_allowed_m;
+        next[i].rest = match (calm, before) {
+            (false, _) => 0,
+            (true, b) if b + 1 < full => b + 1,
+            // The last step into rest waits until the overlap has been pushed out.
+            (true, b) if b + 1 == full && !shallow => b,
+            (true, _) => full,
+        };
+        if next[i].rest < full || before < full {
+            fixpoint[islands.root(i)] = false;
+        }
+    }
+    for (i, member) in members.iter().enumerate() {
+        if member.body.is_dynamic() && next[i].rest == full {
+            let rest = if fixpoint[islands.root(i)] { full + 1 } else { full };
+            let pose = member.state;
+            next[i] = BodyState { velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO, rest, ..pose };
+        }
+    }
+}
+
+/// Whether neither velocity nor change of pose shows.
+fn quiet(member: &Member, next: &BodyState, environment: &Environment) -> bool {
+    let settings = &environment.settings;
+    let r2 = member.body.radius * member.body.radius;
+    let per_second = 1.0 / settings.frame_seconds;
+    let shift = (next.position - member.state.position) * per_second;
+    // |q' - q| is half the angle of the turn; the sign of a quaternion has no meaning.
+    let (a, b) = (next.rotation, member.state.rotation);
+    let difference = if a.dot(b) < 0.0 { a + b } else { a - b };
+    let turn2 = 4.0 * difference.length_squared() * per_second * per_second;
+    let limit2 = settings.rest_speed * settings.rest_speed;
+    next.velocity.length_squared() < limit2
+        && next.angular_velocity.length_squared() * r2 < limit2
+        && shift.length_squared() < limit2
+        && turn2 * r2 < limit2
+}
