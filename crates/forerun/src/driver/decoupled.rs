@@ -242,3 +242,6 @@ impl Drop for Decoupled {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
