@@ -6,11 +6,26 @@
 //!
 //! *Architecture invariant:* this crate knows no physics and reads no clock.
 
+mod activity;
+mod affected;
+mod areas;
+pub mod check;
 pub mod command;
+mod command_log;
+mod commanding;
+mod definitions;
+mod effect;
 pub mod frame;
+mod frame_table;
+mod sample;
 pub mod snapshot;
+mod stale;
 pub mod timeline;
+mod wavefront;
 
+#[doc(hidden)]
+pub use affected::Mutation;
+pub use areas::Area;
 pub use command::{Change, Command, CommandError, CommandKey};
 pub use frame::Frame;
 pub use snapshot::{Certainty, Sample, Snapshot};
