@@ -68,7 +68,8 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
     if !any.gt(F::zero()).any() {
         return false;
     }
-    let sum = bounce(block, &mut v, &hits, &target, target_sum, all);
+    let targets = Targets { hits, speeds: target, sum: target_sum, all };
+    let sum = bounce(block, &mut v, &targets);
     // Friction of the collision alone: the impulses of the contacts are kept apart.
     let (tangents, twist) = (block.friction.impulses, block.friction.twist_impulse);
     block.friction.impulses = [F::zero(); 2];
@@ -80,20 +81,24 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
     true
 }
 
+/// What the points of a contact are to bounce to.
+struct Targets<F> {
+    /// 1 for the points that collide.
+    hits: [F; 4],
+    speeds: [F; 4],
+    sum: F,
+    /// 1 where all points of the contact collide: a flat landing.
+    all: F,
+}
+
 /// Normal impulses towards the target speeds. Returns their sum.
 #[inline(always)]
-fn bounce<F: Lanes>(
-    block: &Block<F>,
-    v: &mut Sides<F>,
-    hits: &[F; 4],
-    target: &[F; 4],
-    target_sum: F,
-    all: F,
-) -> F {
+fn bounce<F: Lanes>(block: &Block<F>, v: &mut Sides<F>, targets: &Targets<F>) -> F {
+    let Targets { hits, speeds: target, .. } = targets;
     let row = block.centre_jacobian();
     let centre = &block.centre;
-    let lacking = target_sum * centre.inverse_count - v.along(block, &row);
-    let flat = all.gt(F::splat(0.5)).select((centre.inverse_k * lacking).max(F::zero()), F::zero());
+    let lacking = targets.sum * centre.inverse_count - v.along(block, &row);
+    let flat = targets.all.gt(F::splat(0.5)).select((centre.inverse_k * lacking).max(F::zero()), F::zero());
     v.apply(block, &row, flat);
     let mut impulses = [F::zero(); 4];
     for q in 0..4 {
