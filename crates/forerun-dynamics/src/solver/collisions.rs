@@ -1,7 +1,7 @@
 //! Collisions: impulses with restitution on the velocities before gravity (Guendelman et al. 2003, section 7; dissertation 2.4.4).
 //!
 //! A contact collides when it approaches and will close within the substep. A body at rest has no velocity before gravity, so that it
-//! does not bounce, whatever its restitution: there is no threshold speed.
+//! does not bounce, whatever its restitution. What gravity adds in one frame counts as rest: a speed that shrinks with the frame, no threshold of its own.
 
 use super::blocks::Block;
 use super::sweep::{Sides, friction};
@@ -19,6 +19,8 @@ pub(crate) struct Moving<'a> {
     /// Mass-scaled change of velocity that gravity and forces will make in the substep.
     pub(crate) kicks: &'a [Row],
     pub(crate) substep_seconds: f32,
+    /// What gravity adds to a speed in a frame: slower approaches are contacts, not collisions. m/s
+    pub(crate) fall: f32,
 }
 
 dispatched! {
@@ -58,7 +60,10 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
         let speed = v.along(block, &row);
         let ahead = separation + h * (speed + kick.along(block, &row));
         let is_point = point.inverse_k.gt(F::zero());
-        let hit = is_point & speed.lt(F::zero()) & ahead.lt(F::zero()) & block.restitution.gt(F::zero());
+        let hit = is_point
+            & speed.lt(F::splat(-moving.fall))
+            & ahead.lt(F::zero())
+            & block.restitution.gt(F::zero());
         hits[q] = hit.select(F::one(), F::zero());
         target[q] = -(block.restitution * speed);
         all = is_point.select(all.min(hits[q]), all);
