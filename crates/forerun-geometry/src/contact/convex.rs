@@ -72,7 +72,7 @@ pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) 
     let origin = first.pose.position;
     let a = Solid::new(first.shape, &first.pose, origin)?;
     let b = Solid::new(second.shape, &second.pose, origin)?;
-    let Distance::Apart(witness) = gjk::distance(&a, &b) else { return None };
+    let Distance::Apart(witness) = gjk::distance(&a, &b, margin) else { return None };
     let axis = Axis::from_witness(&a, &b, &witness);
     let manifold = axis.manifold(&a, &b, margin)?.moved(origin);
     let point = manifold.points[0];
@@ -95,7 +95,7 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
             return on_face;
         }
     }
-    let side = side_axis(a, b);
+    let side = side_axis(a, b, margin);
     if let Some(side) = &side {
         if side.separation >= margin {
             return None;
@@ -105,7 +105,7 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
             return side.manifold(a, b, margin);
         }
     }
-    let general = general_axis(a, b)?;
+    let general = general_axis(a, b, margin)?;
     if general.separation >= margin {
         return None;
     }
@@ -199,13 +199,14 @@ impl Axis {
 
 /// The axis between the side of a cylinder and whatever is nearest to it; none if there is no cylinder, if its cap or rim is
 /// nearer, or if an axis reaches into the other shape.
-fn side_axis(a: &Solid, b: &Solid) -> Option<Axis> {
+fn side_axis(a: &Solid, b: &Solid, margin: f32) -> Option<Axis> {
     let cylinders = [a.cylinder_axis(), b.cylinder_axis()];
     if cylinders == [None, None] {
         return None;
     }
     let (rod_a, rod_b) = (a.as_rod(), b.as_rod());
-    let Distance::Apart(witness) = gjk::distance(&rod_a, &rod_b) else { return None };
+    let enough = margin + rod_a.radius + rod_b.radius;
+    let Distance::Apart(witness) = gjk::distance(&rod_a, &rod_b, enough) else { return None };
     let mut normal = unit_or(witness.normal.as_vec3(), Vec3::Y);
     for axis in cylinders.into_iter().flatten() {
         let along = normal.dot(axis);
@@ -230,8 +231,8 @@ fn separation_along(a: &Solid, b: &Solid, normal: Vec3) -> f32 {
 }
 
 /// The axis of the true distance, or of the shortest way out of an overlap.
-fn general_axis(a: &Solid, b: &Solid) -> Option<Axis> {
-    match gjk::distance(a, b) {
+fn general_axis(a: &Solid, b: &Solid, margin: f32) -> Option<Axis> {
+    match gjk::distance(a, b, margin + a.radius + b.radius) {
         Distance::Apart(witness) => Some(Axis::from_witness(a, b, &witness)),
         Distance::Overlap(simplex) => {
             let witness = penetration::penetration(a, b, &simplex);
