@@ -15,7 +15,7 @@ use super::clip::face_manifold;
 use super::gjk::{self, Distance, Witness};
 use super::reduce::TIE;
 use super::solid::Solid;
-use super::{ContactPoint, Manifold, Motion, Placed, any_perpendicular, penetration, unit_or};
+use super::{ContactPoint, Manifold, Placed, any_perpendicular, penetration, unit_or};
 use crate::{Pose, Shape, Vec3};
 
 /// By how much the general axis must beat the best face, for large shapes. Metres.
@@ -36,6 +36,9 @@ const ACROSS: f32 = 1.0e-3;
 /// Edges that enclose an angle with a smaller sine run alongside each other and touch in two points. About 1 degree: beside
 /// each other they are only where they cross, and both points are given the normal of that place.
 const ALONGSIDE: f32 = 0.02;
+
+/// Cuboids that move by less than this together are left to the next frame. Metres.
+const UNHURRIED: f32 = 5.0e-3;
 
 /// A face, the solid that it belongs to, and how far the other is above it.
 #[derive(Clone, Copy)]
@@ -65,8 +68,7 @@ pub(super) fn convex_convex(
 /// Two cuboids that no face of theirs brings together: the nearest corner or edge, if they are about to meet there.
 pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) -> Option<Manifold> {
     let cuboids = matches!((first.shape, second.shape), (Shape::Cuboid(_), Shape::Cuboid(_)));
-    let still = first.motion == Motion::default() && second.motion == Motion::default();
-    if !cuboids || still {
+    if !cuboids || first.reach() + second.reach() < UNHURRIED {
         return None;
     }
     let origin = first.pose.position;
@@ -78,6 +80,14 @@ pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) 
     let point = manifold.points[0];
     let closing = first.motion.of(point.position) - second.motion.of(point.position);
     (closing.dot(point.normal) > point.separation).then_some(manifold)
+}
+
+impl Placed<'_> {
+    /// Further than this none of its points moves. Metres.
+    fn reach(&self) -> f32 {
+        let arm = (self.motion.about - self.pose.position).length() + self.shape.radius_about(Vec3::ZERO);
+        self.motion.linear.length() + self.motion.angular.length() * arm
+    }
 }
 
 fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
