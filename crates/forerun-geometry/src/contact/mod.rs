@@ -18,7 +18,7 @@ mod cuboid;
 mod cylinder;
 mod gjk;
 mod half_space;
-pub mod mesh;
+mod mesh;
 mod passing;
 mod penetration;
 mod reduce;
