@@ -18,6 +18,25 @@ impl Aabb {
         Aabb { min: centre - half_extents, max: centre + half_extents }
     }
 
+    /// The smallest box around points. Of no points: a box with `min` above `max`, which overlaps nothing finite.
+    #[must_use]
+    pub fn around(points: impl Iterator<Item = Vec3>) -> Self {
+        let nothing = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+        points.fold(nothing, |bounds, p| Aabb { min: bounds.min.min(p), max: bounds.max.max(p) })
+    }
+
+    /// The middle. Metres.
+    #[must_use]
+    pub fn centre(&self) -> Vec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Half the size along each axis. Metres.
+    #[must_use]
+    pub fn half_extents(&self) -> Vec3 {
+        (self.max - self.min) * 0.5
+    }
+
     /// Whether the two boxes share a point.
     #[must_use]
     pub fn overlaps(&self, other: &Aabb) -> bool {

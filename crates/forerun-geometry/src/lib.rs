@@ -9,6 +9,8 @@ pub mod bounds;
 pub mod contact;
 pub mod mass;
 pub mod pose;
+pub mod ray;
+pub mod sdf;
 pub mod shape;
 
 pub use bounds::Aabb;
@@ -16,4 +18,5 @@ pub use contact::{ContactPoint, Manifold, Motion, Placed};
 pub use glam::{Mat3, Quat, Vec3};
 pub use mass::MassProperties;
 pub use pose::Pose;
+pub use ray::{Ray, RayHit};
 pub use shape::Shape;

@@ -16,7 +16,7 @@ use super::shock::propagate_shock;
 use super::sweep::sweep;
 use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
-use crate::lanes::Row;
+use crate::lanes::{Portable, Row};
 use crate::narrow_phase::Contact;
 use crate::{BodyKind, BodyState, Environment, Member};
 
@@ -32,7 +32,7 @@ pub(crate) struct Batch<'a> {
     dynamic: Vec<bool>,
     islands: Islands,
     graph: ContactGraph,
-    blocks: Vec<Block>,
+    blocks: Vec<Block<Portable>>,
     spins: Vec<Vec3>,
     bounces: bool,
 }
@@ -169,7 +169,7 @@ impl<'a> Batch<'a> {
         let settings = self.environment.settings;
         let push_max = settings.recovery_speed_max * settings.frame_seconds;
         for _ in 0..self.pushes() {
-            propagate_shock(&self.blocks, &mut self.bodies.displacements, &settings, push_max);
+            propagate_shock(&mut self.blocks, &mut self.bodies.displacements, &settings, push_max);
         }
     }
 

@@ -4,7 +4,7 @@
 //! same body. The colour of a contact depends on its island alone; which lane it lands in does not change its result.
 
 use super::contact_graph::ContactGraph;
-use crate::lanes::{F8, LANES, V8};
+use crate::lanes::{LANES, Lanes, Portable, V8};
 use crate::narrow_phase::Contact;
 
 /// Padding: a lane without a contact.
@@ -15,84 +15,89 @@ const COLOURS: usize = 64;
 
 /// One contact point in each lane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PointRow {
-    pub(crate) normal: V8,
+#[repr(C)]
+pub(crate) struct PointRow<F> {
+    pub(crate) normal: V8<F>,
     /// Mass-scaled angular parts of the Jacobian.
-    pub(crate) first: V8,
-    pub(crate) second: V8,
+    pub(crate) first: V8<F>,
+    pub(crate) second: V8<F>,
     /// 1 / (J Jᵀ); 0 where there is no point.
-    pub(crate) inverse_k: F8,
+    pub(crate) inverse_k: F,
     /// Separation at the start of the frame.
-    pub(crate) separation: F8,
+    pub(crate) separation: F,
     /// Normal impulse of the running substep.
-    pub(crate) impulse: F8,
+    pub(crate) impulse: F,
 }
 
 /// The mean of a contact's points as one row: converges faster than the points alone.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CentreRow {
-    pub(crate) normal: V8,
-    pub(crate) first: V8,
-    pub(crate) second: V8,
-    pub(crate) inverse_k: F8,
-    pub(crate) inverse_count: F8,
+#[repr(C)]
+pub(crate) struct CentreRow<F> {
+    pub(crate) normal: V8<F>,
+    pub(crate) first: V8<F>,
+    pub(crate) second: V8<F>,
+    pub(crate) inverse_k: F,
+    pub(crate) inverse_count: F,
 }
 
 /// Friction of a contact: two tangents and the twist about the normal, at the mean point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FrictionRows {
-    pub(crate) tangents: [V8; 2],
-    pub(crate) first: [V8; 2],
-    pub(crate) second: [V8; 2],
+#[repr(C)]
+pub(crate) struct FrictionRows<F> {
+    pub(crate) tangents: [V8<F>; 2],
+    pub(crate) first: [V8<F>; 2],
+    pub(crate) second: [V8<F>; 2],
     /// Inverse of the 2 x 2 effective mass matrix: 11, 12, 22.
-    pub(crate) inverse_k: [F8; 3],
-    pub(crate) impulses: [F8; 2],
-    pub(crate) twist_first: V8,
-    pub(crate) twist_second: V8,
-    pub(crate) twist_inverse_k: F8,
-    pub(crate) twist_impulse: F8,
+    pub(crate) inverse_k: [F; 3],
+    pub(crate) impulses: [F; 2],
+    pub(crate) twist_first: V8<F>,
+    pub(crate) twist_second: V8<F>,
+    pub(crate) twist_inverse_k: F,
+    pub(crate) twist_impulse: F,
     /// Mean distance of the points from their centre.
-    pub(crate) radius: F8,
-    pub(crate) static_coefficient: F8,
-    pub(crate) kinetic_coefficient: F8,
+    pub(crate) radius: F,
+    pub(crate) static_coefficient: F,
+    pub(crate) kinetic_coefficient: F,
 }
 
 /// The part of the first guess that is momentum: it is taken off before the second substep.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Momentum {
-    pub(crate) points: [F8; 4],
-    pub(crate) tangents: [F8; 2],
-    pub(crate) twist: F8,
+#[repr(C)]
+pub(crate) struct Momentum<F> {
+    pub(crate) points: [F; 4],
+    pub(crate) tangents: [F; 2],
+    pub(crate) twist: F,
 }
 
 /// Eight contacts.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Block {
+#[repr(C)]
+pub(crate) struct Block<F> {
     pub(crate) first: [u32; LANES],
     pub(crate) second: [u32; LANES],
     /// Index of the contact, or [`NO_CONTACT`].
     pub(crate) source: [u32; LANES],
-    pub(crate) first_scale: F8,
-    pub(crate) second_scale: F8,
+    pub(crate) first_scale: F,
+    pub(crate) second_scale: F,
     /// 1 where impulses move the body, else 0.
-    pub(crate) first_answers: F8,
-    pub(crate) second_answers: F8,
+    pub(crate) first_answers: F,
+    pub(crate) second_answers: F,
     /// How much of the push out of overlap each side takes; less for the lower one.
-    pub(crate) first_yields: F8,
-    pub(crate) second_yields: F8,
-    pub(crate) points: [PointRow; 4],
-    pub(crate) centre: CentreRow,
-    pub(crate) friction: FrictionRows,
-    pub(crate) restitution: F8,
-    pub(crate) momentum: Momentum,
+    pub(crate) first_yields: F,
+    pub(crate) second_yields: F,
+    pub(crate) points: [PointRow<F>; 4],
+    pub(crate) centre: CentreRow<F>,
+    pub(crate) friction: FrictionRows<F>,
+    pub(crate) restitution: F,
+    pub(crate) momentum: Momentum<F>,
 }
 
-impl Block {
+impl<F: Lanes> Block<F> {
     /// A block without contacts: every lane is the dummy body against itself.
-    pub(crate) fn empty(dummy: u32) -> Block {
-        let (z, v) = (F8::ZERO, V8::ZERO);
+    pub(crate) fn empty(dummy: u32) -> Self {
+        let (z, v) = (F::zero(), V8::zero());
         let point =
-            PointRow { normal: v, first: v, second: v, inverse_k: z, separation: F8::splat(1e6), impulse: z };
+            PointRow { normal: v, first: v, second: v, inverse_k: z, separation: F::splat(1e6), impulse: z };
         Block {
             first: [dummy; LANES],
             second: [dummy; LANES],
@@ -131,7 +136,7 @@ pub(crate) fn arrange(
     yields: &[bool],
     graph: &ContactGraph,
     contacts: &[Contact],
-) -> Vec<Block> {
+) -> Vec<Block<Portable>> {
     let by_level = sorted_by_level(graph, contacts);
     let mut colouring = Colouring { stamp: vec![u32::MAX; count], used: vec![0; count] };
     let mut blocks = Vec::with_capacity(contacts.len() / 4 + 8);
@@ -195,7 +200,7 @@ impl Colouring {
 }
 
 /// Puts the contacts of one level into blocks, colour by colour.
-fn place(here: &[u32], colours: &[u8], contacts: &[Contact], dummy: u32, blocks: &mut Vec<Block>) {
+fn place(here: &[u32], colours: &[u8], contacts: &[Contact], dummy: u32, blocks: &mut Vec<Block<Portable>>) {
     const OVERFLOW: usize = COLOURS - 1;
     let mut count = [0usize; COLOURS];
     for &c in colours {

@@ -5,7 +5,7 @@
 
 use super::blocks::Block;
 use super::sweep::{Sides, friction};
-use crate::lanes::{F8, Row, dispatched};
+use crate::lanes::{LaneMask, Lanes, Row, dispatched};
 
 /// A collision may cause the next one within the same substep (a row of balls), at most so many in a row.
 const COLLISION_ROUNDS: usize = 4;
@@ -23,53 +23,56 @@ pub(crate) struct Moving<'a> {
 
 dispatched! {
     /// Bounces every contact that collides in this substep.
-    pub(crate) fn resolve_collisions(blocks: &mut [Block], moving: &mut Moving) {
-        for _ in 0..COLLISION_ROUNDS {
-            let mut any = false;
-            for block in blocks.iter_mut() {
-                if block.restitution.gt(F8::ZERO).any() {
-                    any |= collide(block, moving);
-                }
+    pub(crate) fn resolve_collisions(blocks: &mut [Block], moving: &mut Moving) => resolve_lanes
+}
+
+#[inline(always)]
+fn resolve_lanes<F: Lanes>(blocks: &mut [Block<F>], moving: &mut Moving) {
+    for _ in 0..COLLISION_ROUNDS {
+        let mut any = false;
+        for block in blocks.iter_mut() {
+            if block.restitution.gt(F::zero()).any() {
+                any |= collide(block, moving);
             }
-            if !any {
-                break;
-            }
+        }
+        if !any {
+            break;
         }
     }
 }
 
 /// Returns whether any contact of the block collided.
 #[inline(always)]
-fn collide(block: &mut Block, moving: &mut Moving) -> bool {
+fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
     let mut v = Sides::gather(block, moving.velocities);
-    let moved = Sides::gather(block, moving.displacements);
-    let kick = Sides::gather(block, moving.kicks);
-    let h = F8::splat(moving.substep_seconds);
-    let mut target = [F8::ZERO; 4];
-    let mut hits = [F8::ZERO; 4];
-    let (mut all, mut target_sum, mut any) = (F8::ONE, F8::ZERO, F8::ZERO);
+    let moved: Sides<F> = Sides::gather(block, moving.displacements);
+    let kick: Sides<F> = Sides::gather(block, moving.kicks);
+    let h = F::splat(moving.substep_seconds);
+    let mut target = [F::zero(); 4];
+    let mut hits = [F::zero(); 4];
+    let (mut all, mut target_sum, mut any) = (F::one(), F::zero(), F::zero());
     for q in 0..4 {
         let point = &block.points[q];
         let row = point.jacobian();
         let separation = point.separation + moved.along(block, &row);
         let speed = v.along(block, &row);
         let ahead = separation + h * (speed + kick.along(block, &row));
-        let is_point = point.inverse_k.gt(F8::ZERO);
-        let hit = is_point & speed.lt(F8::ZERO) & ahead.lt(F8::ZERO) & block.restitution.gt(F8::ZERO);
-        hits[q] = hit.select(F8::ONE, F8::ZERO);
+        let is_point = point.inverse_k.gt(F::zero());
+        let hit = is_point & speed.lt(F::zero()) & ahead.lt(F::zero()) & block.restitution.gt(F::zero());
+        hits[q] = hit.select(F::one(), F::zero());
         target[q] = -(block.restitution * speed);
         all = is_point.select(all.min(hits[q]), all);
         any = any.max(hits[q]);
-        target_sum += is_point.select(target[q], F8::ZERO);
+        target_sum += is_point.select(target[q], F::zero());
     }
-    if !any.gt(F8::ZERO).any() {
+    if !any.gt(F::zero()).any() {
         return false;
     }
     let sum = bounce(block, &mut v, &hits, &target, target_sum, all);
     // Friction of the collision alone: the impulses of the contacts are kept apart.
     let (tangents, twist) = (block.friction.impulses, block.friction.twist_impulse);
-    block.friction.impulses = [F8::ZERO; 2];
-    block.friction.twist_impulse = F8::ZERO;
+    block.friction.impulses = [F::zero(); 2];
+    block.friction.twist_impulse = F::zero();
     friction(block, &mut v, sum);
     block.friction.impulses = tangents;
     block.friction.twist_impulse = twist;
@@ -79,13 +82,20 @@ fn collide(block: &mut Block, moving: &mut Moving) -> bool {
 
 /// Normal impulses towards the target speeds. Returns their sum.
 #[inline(always)]
-fn bounce(block: &Block, v: &mut Sides, hits: &[F8; 4], target: &[F8; 4], target_sum: F8, all: F8) -> F8 {
+fn bounce<F: Lanes>(
+    block: &Block<F>,
+    v: &mut Sides<F>,
+    hits: &[F; 4],
+    target: &[F; 4],
+    target_sum: F,
+    all: F,
+) -> F {
     let row = block.centre_jacobian();
     let centre = &block.centre;
     let lacking = target_sum * centre.inverse_count - v.along(block, &row);
-    let flat = all.gt(F8::splat(0.5)).select((centre.inverse_k * lacking).max(F8::ZERO), F8::ZERO);
+    let flat = all.gt(F::splat(0.5)).select((centre.inverse_k * lacking).max(F::zero()), F::zero());
     v.apply(block, &row, flat);
-    let mut impulses = [F8::ZERO; 4];
+    let mut impulses = [F::zero(); 4];
     for q in 0..4 {
         impulses[q] = hits[q] * flat * centre.inverse_count;
     }
@@ -94,7 +104,7 @@ fn bounce(block: &Block, v: &mut Sides, hits: &[F8; 4], target: &[F8; 4], target
             let point = &block.points[q];
             let row = point.jacobian();
             let change = hits[q] * point.inverse_k * (target[q] - v.along(block, &row));
-            let impulse = (impulses[q] + change).max(F8::ZERO);
+            let impulse = (impulses[q] + change).max(F::zero());
             v.apply(block, &row, impulse - impulses[q]);
             impulses[q] = impulse;
         }

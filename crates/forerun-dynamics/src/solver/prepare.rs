@@ -2,10 +2,10 @@
 
 use forerun_geometry::Vec3;
 
-use super::blocks::{Block, CentreRow, FrictionRows, Momentum, NO_CONTACT, PointRow};
+use super::blocks::{Block, CentreRow, FrictionRows, NO_CONTACT, PointRow};
 use super::bodies::Bodies;
 use super::load::Load;
-use crate::lanes::{F8, LANES, V8, dispatched, gather};
+use crate::lanes::{LANES, LaneMask, Lanes, V8, dispatched};
 use crate::narrow_phase::Contact;
 use crate::{Material, Member};
 
@@ -25,7 +25,7 @@ pub(crate) struct Source<'a> {
 }
 
 /// Eight contacts as plain arrays.
-struct Lanes {
+struct Arrays {
     normal: [[f32; LANES]; 3],
     positions: [[[f32; LANES]; 3]; 4],
     normals: [[[f32; LANES]; 3]; 4],
@@ -40,18 +40,21 @@ struct Lanes {
 
 dispatched! {
     /// Fills the rows of blocks whose indices are set.
-    pub(crate) fn prepare(blocks: &mut [Block], bodies: &Bodies, source: &Source) {
-        for block in blocks {
-            let lanes = load_lanes(block, source);
-            fill(block, &lanes, bodies, source.up);
-        }
+    pub(crate) fn prepare(blocks: &mut [Block], bodies: &Bodies, source: &Source) => prepare_lanes
+}
+
+#[inline(always)]
+fn prepare_lanes<F: Lanes>(blocks: &mut [Block<F>], bodies: &Bodies, source: &Source) {
+    for block in blocks {
+        let lanes = load_lanes(block, source);
+        fill(block, &lanes, bodies, source.up);
     }
 }
 
 #[inline(always)]
-fn load_lanes(block: &Block, source: &Source) -> Lanes {
+fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
     let z = [0.0; LANES];
-    let mut lanes = Lanes {
+    let mut lanes = Arrays {
         normal: [z, [1.0; LANES], z],
         positions: [[z; 3]; 4],
         normals: [[z, [1.0; LANES], z]; 4],
@@ -109,19 +112,19 @@ fn combine(a: &Material, b: &Material) -> Material {
 }
 
 /// Reads a side's body: the arm of a point becomes a mass-scaled angular Jacobian.
-struct Side {
-    position: V8,
-    axes: [V8; 3],
-    inertia: V8,
-    scale: F8,
-    answers: F8,
+struct Side<F> {
+    position: V8<F>,
+    axes: [V8<F>; 3],
+    inertia: V8<F>,
+    scale: F,
+    answers: F,
 }
 
-impl Side {
+impl<F: Lanes> Side<F> {
     #[inline(always)]
-    fn gather(bodies: &Bodies, index: &[u32; LANES]) -> Side {
-        let c = gather(&bodies.centres, index);
-        let a = gather(&bodies.axes, index);
+    fn gather(bodies: &Bodies, index: &[u32; LANES]) -> Self {
+        let c = F::gather(&bodies.centres, index);
+        let a = F::gather(&bodies.axes, index);
         let (u, v) = (V8 { x: a[0], y: a[1], z: a[2] }, V8 { x: a[3], y: a[4], z: a[5] });
         Side {
             position: V8 { x: c[0], y: c[1], z: c[2] },
@@ -134,48 +137,52 @@ impl Side {
 
     /// I^(-1/2) Rᵀ w
     #[inline(always)]
-    fn scaled(&self, w: V8) -> V8 {
+    fn scaled(&self, w: V8<F>) -> V8<F> {
         V8 { x: self.axes[0].dot(w), y: self.axes[1].dot(w), z: self.axes[2].dot(w) }.times(self.inertia)
     }
 
     #[inline(always)]
-    fn arm(&self, point: V8, direction: V8) -> V8 {
+    fn arm(&self, point: V8<F>, direction: V8<F>) -> V8<F> {
         self.scaled((point - self.position).cross(direction))
     }
 
     /// The part of J Jᵀ that this side answers for.
     #[inline(always)]
-    fn k(&self, direction2: F8, arm: V8) -> F8 {
+    fn k(&self, direction2: F, arm: V8<F>) -> F {
         self.answers * (self.scale * self.scale * direction2 + arm.dot(arm))
     }
 }
 
 #[inline(always)]
-fn fill(block: &mut Block, lanes: &Lanes, bodies: &Bodies, up: Vec3) {
-    let (a, b) = (Side::gather(bodies, &block.first), Side::gather(bodies, &block.second));
+fn fill<F: Lanes>(block: &mut Block<F>, lanes: &Arrays, bodies: &Bodies, up: Vec3) {
+    let (a, b) = (Side::<F>::gather(bodies, &block.first), Side::<F>::gather(bodies, &block.second));
     block.first_scale = a.scale;
     block.second_scale = b.scale;
     block.first_answers = a.answers;
     block.second_answers = b.answers;
-    block.first_yields = F8(lanes.yields[0]);
-    block.second_yields = F8(lanes.yields[1]);
-    block.restitution = F8(lanes.restitution);
+    block.first_yields = F::from_array(lanes.yields[0]);
+    block.second_yields = F::from_array(lanes.yields[1]);
+    block.restitution = F::from_array(lanes.restitution);
 
-    let mut count = F8::ZERO;
-    let (mut mean, mut mean_normal, mut mean_a, mut mean_b) = (V8::ZERO, V8::ZERO, V8::ZERO, V8::ZERO);
-    let positions = lanes.positions.map(V8::from_lanes);
+    let mut count = F::zero();
+    let (mut mean, mut mean_normal, mut mean_a, mut mean_b) =
+        (V8::zero(), V8::zero(), V8::zero(), V8::zero());
+    let mut positions = [V8::zero(); 4];
     for q in 0..4 {
-        let valid = F8(lanes.valid[q]);
-        let normal = V8::from_lanes(lanes.normals[q]);
+        positions[q] = V8::from_arrays(lanes.positions[q]);
+    }
+    for q in 0..4 {
+        let valid = F::from_array(lanes.valid[q]);
+        let normal = V8::from_arrays(lanes.normals[q]);
         let (first, second) = (a.arm(positions[q], normal), b.arm(positions[q], normal));
-        let k = a.k(F8::ONE, first) + b.k(F8::ONE, second) + F8::splat(TINY);
+        let k = a.k(F::one(), first) + b.k(F::one(), second) + F::splat(TINY);
         block.points[q] = PointRow {
             normal,
             first,
             second,
             inverse_k: valid / k,
-            separation: F8(lanes.separation[q]),
-            impulse: F8(lanes.total[q]),
+            separation: F::from_array(lanes.separation[q]),
+            impulse: F::from_array(lanes.total[q]),
         };
         count += valid;
         mean = mean + positions[q] * valid;
@@ -183,83 +190,111 @@ fn fill(block: &mut Block, lanes: &Lanes, bodies: &Bodies, up: Vec3) {
         mean_a = mean_a + first * valid;
         mean_b = mean_b + second * valid;
     }
-    let inverse_count = F8::ONE / count.max(F8::ONE);
+    let inverse_count = F::one() / count.max(F::one());
     let (normal, first, second) =
         (mean_normal * inverse_count, mean_a * inverse_count, mean_b * inverse_count);
     let length2 = normal.dot(normal);
-    let k = a.k(length2, first) + b.k(length2, second) + F8::splat(TINY);
-    block.centre = CentreRow { normal, first, second, inverse_k: F8::ONE / k, inverse_count };
+    let k = a.k(length2, first) + b.k(length2, second) + F::splat(TINY);
+    block.centre = CentreRow { normal, first, second, inverse_k: F::one() / k, inverse_count };
     let centre = mean * inverse_count;
-    let normal = V8::from_lanes(lanes.normal);
+    let normal = V8::from_arrays(lanes.normal);
     fill_friction(&mut block.friction, &a, &b, normal, centre);
-    block.friction.static_coefficient = F8(lanes.friction[0]);
-    block.friction.kinetic_coefficient = F8(lanes.friction[1]);
-    let mut radius = F8::ZERO;
+    block.friction.static_coefficient = F::from_array(lanes.friction[0]);
+    block.friction.kinetic_coefficient = F::from_array(lanes.friction[1]);
+    let mut radius = F::zero();
     for q in 0..4 {
-        radius += F8(lanes.valid[q]) * (positions[q] - centre).length();
+        radius += F::from_array(lanes.valid[q]) * (positions[q] - centre).length();
     }
     block.friction.radius = radius * inverse_count;
     guess_friction(block, lanes, &positions, centre, up);
 }
 
 #[inline(always)]
-fn fill_friction(rows: &mut FrictionRows, a: &Side, b: &Side, normal: V8, centre: V8) {
-    let steep = normal.x.abs().gt(F8::splat(0.577_35));
+fn fill_friction<F: Lanes>(
+    rows: &mut FrictionRows<F>,
+    a: &Side<F>,
+    b: &Side<F>,
+    normal: V8<F>,
+    centre: V8<F>,
+) {
+    let steep = normal.x.abs().gt(F::splat(0.577_35));
     let across = steep.select_v(
-        V8 { x: normal.y, y: -normal.x, z: F8::ZERO },
-        V8 { x: F8::ZERO, y: normal.z, z: -normal.y },
+        V8 { x: normal.y, y: -normal.x, z: F::zero() },
+        V8 { x: F::zero(), y: normal.z, z: -normal.y },
     );
-    let t1 = across * (F8::ONE / across.length().max(F8::splat(1e-15)));
+    let t1 = across * (F::one() / across.length().max(F::splat(1e-15)));
     let t2 = normal.cross(t1);
     rows.tangents = [t1, t2];
     rows.first = [a.arm(centre, t1), a.arm(centre, t2)];
     rows.second = [b.arm(centre, t1), b.arm(centre, t2)];
-    let k = |i: usize| a.k(F8::ONE, rows.first[i]) + b.k(F8::ONE, rows.second[i]);
-    let (k11, k22) = (k(0), k(1));
+    let k11 = a.k(F::one(), rows.first[0]) + b.k(F::one(), rows.second[0]);
+    let k22 = a.k(F::one(), rows.first[1]) + b.k(F::one(), rows.second[1]);
     let k12 = a.answers * rows.first[0].dot(rows.first[1]) + b.answers * rows.second[0].dot(rows.second[1]);
-    let inverse = F8::ONE / (k11 * k22 - k12 * k12 + F8::splat(1e-20));
+    let inverse = F::one() / (k11 * k22 - k12 * k12 + F::splat(1e-20));
     rows.inverse_k = [k22 * inverse, -k12 * inverse, k11 * inverse];
     rows.twist_first = a.scaled(normal);
     rows.twist_second = b.scaled(normal);
-    let k = a.k(F8::ZERO, rows.twist_first) + b.k(F8::ZERO, rows.twist_second) + F8::splat(TINY);
-    rows.twist_inverse_k = F8::ONE / k;
+    let k = a.k(F::zero(), rows.twist_first) + b.k(F::zero(), rows.twist_second) + F::splat(TINY);
+    rows.twist_inverse_k = F::one() / k;
 }
 
-/// The friction that makes the guessed normal impulses add up to vertical forces, within the cone, at the loaded centre.
+/// Both first guesses of the friction: for all that the contacts carry, and the part of it that is momentum.
 #[inline(always)]
-fn guess_friction(block: &mut Block, lanes: &Lanes, positions: &[V8; 4], centre: V8, up: Vec3) {
-    let up = V8 { x: F8::splat(up.x), y: F8::splat(up.y), z: F8::splat(up.z) };
-    let normal = V8::from_lanes(lanes.normal);
-    let rows = &block.friction;
-    let guess = |impulses: [F8; 4]| {
-        let (mut sum, mut tangential, mut loaded) = (F8::ZERO, V8::ZERO, V8::ZERO);
+fn guess_friction<F: Lanes>(
+    block: &mut Block<F>,
+    lanes: &Arrays,
+    positions: &[V8<F>; 4],
+    centre: V8<F>,
+    up: Vec3,
+) {
+    let up = V8 { x: F::splat(up.x), y: F::splat(up.y), z: F::splat(up.z) };
+    let place = Place { positions, centre, normal: V8::from_arrays(lanes.normal), up };
+    let mut total = [F::zero(); 4];
+    let mut weight = [F::zero(); 4];
+    for q in 0..4 {
+        total[q] = F::from_array(lanes.total[q]);
+        weight[q] = F::from_array(lanes.weight[q]);
+        block.momentum.points[q] = total[q] - weight[q];
+    }
+    let all = place.friction_of(block, &total);
+    let still = place.friction_of(block, &weight);
+    block.momentum.tangents = [all[0] - still[0], all[1] - still[1]];
+    block.momentum.twist = all[2] - still[2];
+    block.friction.impulses = [all[0], all[1]];
+    block.friction.twist_impulse = all[2];
+}
+
+/// Where the guessed impulses act.
+struct Place<'a, F> {
+    positions: &'a [V8<F>; 4],
+    centre: V8<F>,
+    normal: V8<F>,
+    up: V8<F>,
+}
+
+impl<F: Lanes> Place<'_, F> {
+    /// The friction (two tangents, twist) that makes normal impulses add up to vertical forces, within the cone, at the loaded centre.
+    #[inline(always)]
+    fn friction_of(&self, block: &Block<F>, impulses: &[F; 4]) -> [F; 3] {
+        let rows = &block.friction;
+        let (mut sum, mut tangential, mut loaded) = (F::zero(), V8::zero(), V8::zero());
         for q in 0..4 {
             let n = block.points[q].normal;
-            let rise = n.dot(up);
-            let rises = rise.abs().gt(F8::splat(RISE_MIN));
-            let vertical = rises.select(impulses[q] / rises.select(rise, F8::ONE), impulses[q] * rise);
-            tangential = tangential + up * vertical - n * impulses[q];
-            loaded = loaded + positions[q] * impulses[q];
+            let rise = n.dot(self.up);
+            let rises = rise.abs().gt(F::splat(RISE_MIN));
+            let vertical = rises.select(impulses[q] / rises.select(rise, F::one()), impulses[q] * rise);
+            tangential = tangential + self.up * vertical - n * impulses[q];
+            loaded = loaded + self.positions[q] * impulses[q];
             sum += impulses[q];
         }
         let (x, y) = (tangential.dot(rows.tangents[0]), tangential.dot(rows.tangents[1]));
         let length = (x * x + y * y).sqrt();
         let limit = sum * rows.kinetic_coefficient;
-        let scale = limit.lt(length).select(limit / length.max(F8::splat(1e-20)), F8::ONE);
+        let scale = limit.lt(length).select(limit / length.max(F::splat(1e-20)), F::one());
         let (x, y) = (x * scale, y * scale);
-        let offset = loaded * (F8::ONE / sum.max(F8::splat(TINY))) - centre;
+        let offset = loaded * (F::one() / sum.max(F::splat(TINY))) - self.centre;
         let force = rows.tangents[0] * x + rows.tangents[1] * y;
-        let twist = sum.gt(F8::ZERO).select(offset.cross(force).dot(normal), F8::ZERO);
-        (x, y, twist)
-    };
-    let (total, weight) = (lanes.total.map(F8), lanes.weight.map(F8));
-    let (x, y, twist) = guess(total);
-    let (wx, wy, wtwist) = guess(weight);
-    let mut points = [F8::ZERO; 4];
-    for q in 0..4 {
-        points[q] = total[q] - weight[q];
+        let twist = sum.gt(F::zero()).select(offset.cross(force).dot(self.normal), F::zero());
+        [x, y, twist]
     }
-    block.momentum = Momentum { points, tangents: [x - wx, y - wy], twist: twist - wtwist };
-    block.friction.impulses = [x, y];
-    block.friction.twist_impulse = twist;
 }

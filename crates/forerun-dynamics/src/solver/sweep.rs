@@ -1,64 +1,64 @@
 //! Sweep: one pass of sequential impulses over the blocks, in level order (Gauss-Seidel).
 
 use super::blocks::{Block, PointRow};
-use crate::lanes::{F8, Row, Twist8, V8, dispatched, gather_twist, scatter_twist};
+use crate::lanes::{LaneMask, Lanes, Row, Twist8, V8, dispatched, gather_twist, scatter_twist};
 
 /// The two bodies of eight contacts, with the impulses applied so far.
-pub(crate) struct Sides {
-    pub(crate) first: Twist8,
-    pub(crate) second: Twist8,
+pub(crate) struct Sides<F> {
+    pub(crate) first: Twist8<F>,
+    pub(crate) second: Twist8<F>,
 }
 
 /// A row of the Jacobian: one direction at one point.
 #[derive(Clone, Copy)]
-pub(crate) struct Jacobian {
-    pub(crate) direction: V8,
-    pub(crate) first: V8,
-    pub(crate) second: V8,
+pub(crate) struct Jacobian<F> {
+    pub(crate) direction: V8<F>,
+    pub(crate) first: V8<F>,
+    pub(crate) second: V8<F>,
 }
 
-impl PointRow {
+impl<F: Lanes> PointRow<F> {
     #[inline(always)]
-    pub(crate) fn jacobian(&self) -> Jacobian {
+    pub(crate) fn jacobian(&self) -> Jacobian<F> {
         Jacobian { direction: self.normal, first: self.first, second: self.second }
     }
 }
 
-impl Block {
+impl<F: Lanes> Block<F> {
     #[inline(always)]
-    pub(crate) fn centre_jacobian(&self) -> Jacobian {
+    pub(crate) fn centre_jacobian(&self) -> Jacobian<F> {
         Jacobian { direction: self.centre.normal, first: self.centre.first, second: self.centre.second }
     }
 
     #[inline(always)]
-    pub(crate) fn tangent_jacobian(&self, i: usize) -> Jacobian {
+    pub(crate) fn tangent_jacobian(&self, i: usize) -> Jacobian<F> {
         let f = &self.friction;
         Jacobian { direction: f.tangents[i], first: f.first[i], second: f.second[i] }
     }
 
     /// 0 in every component: the twist has no linear part.
     #[inline(always)]
-    pub(crate) fn twist_jacobian(&self) -> Jacobian {
+    pub(crate) fn twist_jacobian(&self) -> Jacobian<F> {
         let f = &self.friction;
-        Jacobian { direction: V8::ZERO, first: f.twist_first, second: f.twist_second }
+        Jacobian { direction: V8::zero(), first: f.twist_first, second: f.twist_second }
     }
 }
 
-impl Sides {
+impl<F: Lanes> Sides<F> {
     #[inline(always)]
-    pub(crate) fn gather(block: &Block, rows: &[Row]) -> Sides {
+    pub(crate) fn gather(block: &Block<F>, rows: &[Row]) -> Self {
         Sides { first: gather_twist(rows, &block.first), second: gather_twist(rows, &block.second) }
     }
 
     #[inline(always)]
-    pub(crate) fn scatter(&self, block: &Block, rows: &mut [Row]) {
+    pub(crate) fn scatter(&self, block: &Block<F>, rows: &mut [Row]) {
         scatter_twist(rows, &block.first, &self.first);
         scatter_twist(rows, &block.second, &self.second);
     }
 
     /// How fast the second side moves away from the first along a row.
     #[inline(always)]
-    pub(crate) fn along(&self, block: &Block, row: &Jacobian) -> F8 {
+    pub(crate) fn along(&self, block: &Block<F>, row: &Jacobian<F>) -> F {
         row.direction.dot(self.second.linear) * block.second_scale
             - row.direction.dot(self.first.linear) * block.first_scale
             + row.second.dot(self.second.angular)
@@ -67,7 +67,7 @@ impl Sides {
 
     /// Applies an impulse along a row, scaled by each side's factor.
     #[inline(always)]
-    pub(crate) fn push(&mut self, block: &Block, row: &Jacobian, impulses: (F8, F8)) {
+    pub(crate) fn push(&mut self, block: &Block<F>, row: &Jacobian<F>, impulses: (F, F)) {
         let (on_first, on_second) = impulses;
         self.first.linear = self.first.linear - row.direction * (block.first_scale * on_first);
         self.first.angular = self.first.angular - row.first * on_first;
@@ -77,58 +77,71 @@ impl Sides {
 
     /// Applies an impulse along a row to the sides that impulses move.
     #[inline(always)]
-    pub(crate) fn apply(&mut self, block: &Block, row: &Jacobian, impulse: F8) {
+    pub(crate) fn apply(&mut self, block: &Block<F>, row: &Jacobian<F>, impulse: F) {
         self.push(block, row, (impulse * block.first_answers, impulse * block.second_answers));
     }
 }
 
 dispatched! {
     /// One sweep over all blocks. A gap may close within the substep but not more; overlap is left to the shock propagation.
-    pub(crate) fn sweep(blocks: &mut [Block], velocities: &mut [Row], displacements: &[Row], substep_seconds: f32) {
-        let per_second = F8::splat(1.0 / substep_seconds);
-        for block in blocks {
-            let mut v = Sides::gather(block, velocities);
-            let moved = Sides::gather(block, displacements);
-            let sum = normals(block, &mut v, &moved, per_second);
-            friction(block, &mut v, sum);
-            v.scatter(block, velocities);
-        }
+    pub(crate) fn sweep(
+        blocks: &mut [Block],
+        velocities: &mut [Row],
+        displacements: &[Row],
+        substep_seconds: f32,
+    ) => sweep_lanes
+}
+
+#[inline(always)]
+fn sweep_lanes<F: Lanes>(
+    blocks: &mut [Block<F>],
+    velocities: &mut [Row],
+    displacements: &[Row],
+    substep_seconds: f32,
+) {
+    let per_second = F::splat(1.0 / substep_seconds);
+    for block in blocks {
+        let mut v = Sides::gather(block, velocities);
+        let moved = Sides::gather(block, displacements);
+        let sum = normals(block, &mut v, &moved, per_second);
+        friction(block, &mut v, sum);
+        v.scatter(block, velocities);
     }
 }
 
 /// Centre row, then the points. Returns the sum of the normal impulses.
 #[inline(always)]
-fn normals(block: &mut Block, v: &mut Sides, moved: &Sides, per_second: F8) -> F8 {
-    let mut allowed = [F8::ZERO; 4];
-    let (mut allowed_sum, mut least) = (F8::ZERO, F8::splat(1e30));
+fn normals<F: Lanes>(block: &mut Block<F>, v: &mut Sides<F>, moved: &Sides<F>, per_second: F) -> F {
+    let mut allowed = [F::zero(); 4];
+    let (mut allowed_sum, mut least) = (F::zero(), F::splat(1e30));
     for q in 0..4 {
         let point = &block.points[q];
         let separation = point.separation + moved.along(block, &point.jacobian());
-        allowed[q] = separation.max(F8::ZERO) * per_second;
-        let is_point = point.inverse_k.gt(F8::ZERO);
-        allowed_sum += is_point.select(allowed[q], F8::ZERO);
+        allowed[q] = separation.max(F::zero()) * per_second;
+        let is_point = point.inverse_k.gt(F::zero());
+        allowed_sum += is_point.select(allowed[q], F::zero());
         least = is_point.select(least.min(point.impulse), least);
     }
     let row = block.centre_jacobian();
     let centre = &block.centre;
     let approach = v.along(block, &row) + allowed_sum * centre.inverse_count;
     let share = (-(centre.inverse_k * approach) * centre.inverse_count).max(-least);
-    let has_points = centre.inverse_count.gt(F8::ZERO);
-    let share = has_points.select(share, F8::ZERO);
-    let mut count = F8::ZERO;
+    let has_points = centre.inverse_count.gt(F::zero());
+    let share = has_points.select(share, F::zero());
+    let mut count = F::zero();
     for point in &mut block.points {
-        let is_point = point.inverse_k.gt(F8::ZERO);
+        let is_point = point.inverse_k.gt(F::zero());
         point.impulse = is_point.select(point.impulse + share, point.impulse);
-        count += is_point.select(F8::ONE, F8::ZERO);
+        count += is_point.select(F::one(), F::zero());
     }
     v.apply(block, &row, share * count);
 
-    let mut sum = F8::ZERO;
+    let mut sum = F::zero();
     for q in 0..4 {
         let point = block.points[q];
         let row = point.jacobian();
         let wanted = point.impulse - point.inverse_k * (v.along(block, &row) + allowed[q]);
-        let impulse = wanted.max(F8::ZERO);
+        let impulse = wanted.max(F::zero());
         block.points[q].impulse = impulse;
         sum += impulse;
         v.apply(block, &row, impulse - point.impulse);
@@ -138,7 +151,7 @@ fn normals(block: &mut Block, v: &mut Sides, moved: &Sides, per_second: F8) -> F
 
 /// Friction of a contact whose normal impulses sum to `sum`: a circular cone for the tangents, its own limit for the twist.
 #[inline(always)]
-pub(crate) fn friction(block: &mut Block, v: &mut Sides, sum: F8) {
+pub(crate) fn friction<F: Lanes>(block: &mut Block<F>, v: &mut Sides<F>, sum: F) {
     let (t1, t2, twist) = (block.tangent_jacobian(0), block.tangent_jacobian(1), block.twist_jacobian());
     let f = &block.friction;
     let (v1, v2) = (v.along(block, &t1), v.along(block, &t2));
@@ -146,7 +159,7 @@ pub(crate) fn friction(block: &mut Block, v: &mut Sides, sum: F8) {
     let (x, y) = (f.impulses[0] - (k11 * v1 + k12 * v2), f.impulses[1] - (k12 * v1 + k22 * v2));
     let length = (x * x + y * y).sqrt();
     let (sticks, slides) = (sum * f.static_coefficient, sum * f.kinetic_coefficient);
-    let scale = sticks.lt(length).select(slides / length.max(F8::splat(1e-20)), F8::ONE);
+    let scale = sticks.lt(length).select(slides / length.max(F::splat(1e-20)), F::one());
     let (x, y) = (x * scale, y * scale);
     let (dx, dy) = (x - f.impulses[0], y - f.impulses[1]);
 

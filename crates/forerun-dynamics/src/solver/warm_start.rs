@@ -3,7 +3,7 @@
 use super::blocks::{Block, NO_CONTACT};
 use super::islands::Islands;
 use super::sweep::Sides;
-use crate::lanes::{F8, LANES, Row, dispatched};
+use crate::lanes::{LANES, Lanes, Portable, Row, dispatched};
 
 /// Below this optimal step the guess would add energy as it stands (it would be neutral at one half).
 const STEP_MIN: f64 = 0.52;
@@ -12,26 +12,29 @@ const GAIN_ALLOWED: f64 = 1e-7;
 
 dispatched! {
     /// Applies all impulses of all blocks to the velocities.
-    pub(crate) fn apply_impulses(blocks: &[Block], velocities: &mut [Row]) {
-        for block in blocks {
-            let mut v = Sides::gather(block, velocities);
-            for point in &block.points {
-                v.apply(block, &point.jacobian(), point.impulse);
-            }
-            for i in 0..2 {
-                v.apply(block, &block.tangent_jacobian(i), block.friction.impulses[i]);
-            }
-            v.apply(block, &block.twist_jacobian(), block.friction.twist_impulse);
-            v.scatter(block, velocities);
+    pub(crate) fn apply_impulses(blocks: &mut [Block], velocities: &mut [Row]) => apply_lanes
+}
+
+#[inline(always)]
+fn apply_lanes<F: Lanes>(blocks: &mut [Block<F>], velocities: &mut [Row]) {
+    for block in blocks {
+        let mut v = Sides::gather(block, velocities);
+        for point in &block.points {
+            v.apply(block, &point.jacobian(), point.impulse);
         }
+        for i in 0..2 {
+            v.apply(block, &block.tangent_jacobian(i), block.friction.impulses[i]);
+        }
+        v.apply(block, &block.twist_jacobian(), block.friction.twist_impulse);
+        v.scatter(block, velocities);
     }
 }
 
 /// Takes the momentum out of the impulses: it has been passed on and must not be passed on again.
-pub(crate) fn remove_momentum(blocks: &mut [Block]) {
+pub(crate) fn remove_momentum(blocks: &mut [Block<Portable>]) {
     for block in blocks {
         for (point, momentum) in block.points.iter_mut().zip(block.momentum.points) {
-            point.impulse = (point.impulse - momentum).max(F8::ZERO);
+            point.impulse = (point.impulse - momentum).max(Portable::zero());
         }
         for i in 0..2 {
             block.friction.impulses[i] -= block.momentum.tangents[i];
@@ -64,7 +67,13 @@ pub(crate) enum Guarded {
 
 impl EnergyGuard<'_> {
     /// Scales back what `before -> velocities` added, where it added energy.
-    pub(crate) fn check(&self, blocks: &mut [Block], before: &[Row], velocities: &mut [Row], what: Guarded) {
+    pub(crate) fn check(
+        &self,
+        blocks: &mut [Block<Portable>],
+        before: &[Row],
+        velocities: &mut [Row],
+        what: Guarded,
+    ) {
         let n = self.dynamic.len();
         let (mut work, mut square) = (vec![0.0f64; n], vec![0.0f64; n]);
         for i in (0..n).filter(|&i| self.dynamic[i]) {
@@ -109,14 +118,14 @@ impl EnergyGuard<'_> {
         }
     }
 
-    fn scale_impulses(&self, scale: &[f32], blocks: &mut [Block], what: Guarded) {
+    fn scale_impulses(&self, scale: &[f32], blocks: &mut [Block<Portable>], what: Guarded) {
         for block in blocks {
             let mut factor = [1.0; LANES];
             for lane in (0..LANES).filter(|&lane| block.source[lane] != NO_CONTACT) {
                 let (a, b) = (block.first[lane] as usize, block.second[lane] as usize);
                 factor[lane] = scale[self.islands.root(if self.dynamic[a] { a } else { b })];
             }
-            let factor = F8(factor);
+            let factor = Portable::from_array(factor);
             for point in &mut block.points {
                 point.impulse = point.impulse * factor;
             }

@@ -2,8 +2,29 @@
 //!
 //! Promise: the result depends on the arguments alone, and `contact_manifolds(a, b)` lists the same points as
 //! `contact_manifolds(b, a)` only up to rounding: callers fix the order (lower body first).
+//!
+//! One room for each family of pairs, one function for each pair (`shape_shape`). Round shapes have closed
+//! formulas; two cuboids have a kernel of their own; whatever has faces and is not two cuboids goes through
+//! `convex`. Without a memory of the last frame a manifold must not flip between two equally good answers: faces
+//! are preferred to edges and the first shape's faces to the second's, each by a margin named where it is used.
 
 use crate::{Pose, Shape, Vec3};
+
+mod capsule;
+mod clip;
+mod compound;
+mod convex;
+mod cuboid;
+mod cylinder;
+mod gjk;
+mod half_space;
+pub mod mesh;
+mod penetration;
+mod reduce;
+mod solid;
+mod sphere;
+
+pub use cuboid::cuboid_cuboid;
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +42,7 @@ pub struct ContactPoint {
 pub struct Manifold {
     /// Mean unit normal, from the first shape to the second.
     pub normal: Vec3,
-    /// The points; the first `count` are meant.
+    /// The points; the first `count` are meant, the others are far apart (10⁶ m) and harmless.
     pub points: [ContactPoint; 4],
     /// How many points there are, 1 to 4.
     pub count: u32,
@@ -49,5 +70,100 @@ pub struct Placed<'a> {
     pub motion: Motion,
 }
 
-/// Appends the manifolds of two shapes that come nearer than `margin` (metres).
-pub fn contact_manifolds(_first: &Placed, _second: &Placed, _margin: f32, _out: &mut Vec<Manifold>) {}
+/// Appends the manifolds of two shapes: none or one for a convex pair, several where a compound or a mesh takes part.
+///
+/// Only points whose separation is below `margin` (metres, 0 or more) are listed. The normal points from `first` to
+/// `second`. What does not move (two half-spaces) has no contact. All numbers are assumed finite.
+pub fn contact_manifolds(first: &Placed, second: &Placed, margin: f32, out: &mut Vec<Manifold>) {
+    match (first.shape, second.shape) {
+        (Shape::Compound(_), _) | (_, Shape::Compound(_)) => {
+            compound::compound_any(first, second, margin, out);
+        }
+        (Shape::Mesh(_), _) | (_, Shape::Mesh(_)) => mesh::mesh_manifolds(first, second, margin, out),
+        (Shape::Cuboid(a), Shape::Cuboid(b)) => {
+            let found = cuboid_cuboid(a, &first.pose, b, &second.pose, margin);
+            out.extend(found.or_else(|| convex::corner_about_to_hit(first, second, margin)));
+        }
+        _ => out.extend(convex_pair((first.shape, &first.pose), (second.shape, &second.pose), margin)),
+    }
+}
+
+/// The manifold of two convex shapes, or of a convex shape and a half-space.
+fn convex_pair(first: (&Shape, &Pose), second: (&Shape, &Pose), margin: f32) -> Option<Manifold> {
+    use Shape::{Capsule, HalfSpace, Sphere};
+    let ((a, pa), (b, pb)) = (first, second);
+    match (a, b) {
+        (HalfSpace, _) => half_space::half_space_any(pa, b, pb, margin),
+        (_, HalfSpace) => half_space::half_space_any(pb, a, pa, margin).map(Manifold::flipped),
+        (Sphere(s), _) => sphere::sphere_any(s, pa.position, second, margin),
+        (_, Sphere(s)) => sphere::sphere_any(s, pb.position, first, margin).map(Manifold::flipped),
+        (Capsule(c), Capsule(d)) => capsule::capsule_capsule(c, pa, d, pb, margin),
+        _ => convex::convex_convex(first, second, margin),
+    }
+}
+
+impl ContactPoint {
+    /// Fills the unused places of a manifold.
+    const FAR_APART: ContactPoint =
+        ContactPoint { position: Vec3::ZERO, normal: Vec3::ZERO, separation: 1.0e6 };
+
+    /// The same point, seen from the other shape.
+    fn flipped(self) -> Self {
+        ContactPoint { normal: -self.normal, ..self }
+    }
+}
+
+impl Manifold {
+    /// A manifold of up to four points; none if there are none.
+    fn from_points(points: &[ContactPoint]) -> Option<Manifold> {
+        let first = points.first()?;
+        let mut all = [ContactPoint::FAR_APART; 4];
+        all[..points.len()].copy_from_slice(points);
+        let sum = points.iter().fold(Vec3::ZERO, |sum, point| sum + point.normal);
+        let same = points.iter().all(|point| point.normal == first.normal);
+        let normal = if same { first.normal } else { unit_or(sum, first.normal) };
+        Some(Manifold { normal, points: all, count: points.len() as u32 })
+    }
+
+    /// The same contact, seen from the other shape.
+    fn flipped(self) -> Self {
+        Manifold { normal: -self.normal, points: self.points.map(ContactPoint::flipped), ..self }
+    }
+
+    /// The points that are meant.
+    #[must_use]
+    pub fn points(&self) -> &[ContactPoint] {
+        &self.points[..self.count as usize]
+    }
+
+    /// The smallest separation of all points. Metres.
+    #[must_use]
+    pub fn deepest(&self) -> f32 {
+        self.points().iter().fold(f32::INFINITY, |least, point| least.min(point.separation))
+    }
+}
+
+/// `vector` at length 1, or `fallback` (a unit vector) where it is too short to have a direction.
+fn unit_or(vector: Vec3, fallback: Vec3) -> Vec3 {
+    // Scaled first: the square of a short vector would vanish.
+    let largest = vector.abs().max_element();
+    if largest < 1.0e-12 {
+        return fallback;
+    }
+    let scaled = vector / largest;
+    scaled / scaled.length()
+}
+
+/// A unit vector across `direction` (unit): its cross product with the coordinate axis that it follows least.
+fn any_perpendicular(direction: Vec3) -> Vec3 {
+    let a = direction.abs();
+    let axis = if a.x <= a.y && a.x <= a.z {
+        Vec3::X
+    } else if a.y <= a.z {
+        Vec3::Y
+    } else {
+        Vec3::Z
+    };
+    let across = direction.cross(axis);
+    across / across.length()
+}

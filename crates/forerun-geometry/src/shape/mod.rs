@@ -1,19 +1,29 @@
 //! Shapes: what a body looks like to the physics.
 
+use std::fmt;
 use std::sync::Arc;
 
-use crate::{Aabb, MassProperties, Pose, Vec3};
-use glam::Quat;
+use crate::{Pose, Vec3};
 
 mod compound;
 mod hull;
+mod hull_faces;
+mod hull_surface;
+mod measure;
 mod mesh;
+pub mod mesh_make;
+mod mesh_ray;
+mod mesh_topology;
+mod triangle_tree;
 
 pub use compound::Compound;
 pub use hull::{Hull, HullEdge, HullFace};
-pub use mesh::Mesh;
+pub use mesh::{Mesh, MeshError, MeshRepairs};
+pub(crate) use mesh_ray::FirstHits;
 
 /// A shape in a frame of its own. Cloning is cheap: large shapes are shared.
+///
+/// The constructors check their arguments; who fills the variants by hand promises the ranges given with each field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A ball about the origin.
@@ -30,7 +40,7 @@ pub enum Shape {
     HalfSpace,
     /// Several convex shapes held rigidly together.
     Compound(Arc<Compound>),
-    /// A closed triangle mesh, convex or not.
+    /// A triangle mesh, convex or not.
     Mesh(Arc<Mesh>),
 }
 
@@ -66,58 +76,140 @@ pub struct Cylinder {
     pub radius: f32,
 }
 
+/// Why a shape cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShapeError {
+    /// The argument at fault.
+    pub field: &'static str,
+    /// What is wrong and what is allowed.
+    pub message: String,
+}
+
+impl ShapeError {
+    pub(crate) fn new(field: &'static str, message: impl Into<String>) -> Self {
+        ShapeError { field, message: message.into() }
+    }
+}
+
+impl fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.field, self.message)
+    }
+}
+
+impl std::error::Error for ShapeError {}
+
 impl Shape {
-    /// Mass properties at a uniform density (kg/m³).
-    #[must_use]
-    pub fn mass_properties(&self, density: f32) -> MassProperties {
-        let (mass, principal_inertia) = match self {
-            Shape::Sphere(s) => {
-                let mass = density * (4.0 / 3.0) * std::f32::consts::PI * s.radius * s.radius * s.radius;
-                (mass, Vec3::splat(0.4 * mass * s.radius * s.radius))
-            }
-            Shape::Cuboid(c) => {
-                let h = c.half_extents;
-                let mass = density * 8.0 * h.x * h.y * h.z;
-                let q = h * h;
-                (mass, Vec3::new(q.y + q.z, q.x + q.z, q.x + q.y) * (mass / 3.0))
-            }
-            _ => (0.0, Vec3::ZERO),
-        };
-        MassProperties { mass, centre: Vec3::ZERO, principal_inertia, principal_rotation: Quat::IDENTITY }
+    /// A ball of the given radius (metres).
+    ///
+    /// # Errors
+    /// When the radius is not a finite number above 0.
+    pub fn sphere(radius: f32) -> Result<Shape, ShapeError> {
+        Ok(Shape::Sphere(Sphere { radius: positive("radius", radius)? }))
     }
 
-    /// The smallest axis-aligned box around the shape at `pose`.
-    #[must_use]
-    pub fn aabb(&self, pose: &Pose) -> Aabb {
-        match self {
-            Shape::Sphere(s) => Aabb::from_centre(pose.position, Vec3::splat(s.radius)),
-            Shape::Cuboid(c) => {
-                let m = pose.axes();
-                let h = c.half_extents;
-                let e = m.x_axis.abs() * h.x + m.y_axis.abs() * h.y + m.z_axis.abs() * h.z;
-                Aabb::from_centre(pose.position, e)
-            }
-            _ => Aabb::from_centre(pose.position, Vec3::splat(f32::INFINITY)),
+    /// A box of the given half extents (metres).
+    ///
+    /// # Errors
+    /// When a half extent is not a finite number above 0.
+    pub fn cuboid(half_extents: Vec3) -> Result<Shape, ShapeError> {
+        for half_extent in half_extents.to_array() {
+            positive("half_extents", half_extent)?;
         }
+        Ok(Shape::Cuboid(Cuboid { half_extents }))
     }
 
-    /// Distance from `centre` to the farthest point of the shape. Metres; infinite for half-spaces.
-    #[must_use]
-    pub fn radius_about(&self, centre: Vec3) -> f32 {
-        match self {
-            Shape::Sphere(s) => centre.length() + s.radius,
-            Shape::Cuboid(c) => (centre.abs() + c.half_extents).length(),
-            _ => f32::INFINITY,
+    /// A capsule along y: half the length of the inner segment and the radius (metres).
+    ///
+    /// # Errors
+    /// When the half height is not a finite number of 0 or more, or the radius not one above 0.
+    pub fn capsule(half_height: f32, radius: f32) -> Result<Shape, ShapeError> {
+        if !(half_height >= 0.0 && half_height.is_finite()) {
+            return Err(ShapeError::new(
+                "half_height",
+                format!("must be a finite number of 0 or more, is {half_height}"),
+            ));
         }
+        Ok(Shape::Capsule(Capsule { half_height, radius: positive("radius", radius)? }))
     }
 
-    /// Half of the smallest thickness: what moves further than this in one step may pass through. Metres.
+    /// A cylinder along y (metres).
+    ///
+    /// # Errors
+    /// When one of the two is not a finite number above 0.
+    pub fn cylinder(half_height: f32, radius: f32) -> Result<Shape, ShapeError> {
+        Ok(Shape::Cylinder(Cylinder {
+            half_height: positive("half_height", half_height)?,
+            radius: positive("radius", radius)?,
+        }))
+    }
+
+    /// The convex hull of points (metres). Points inside, on edges or on faces are left out.
+    ///
+    /// # Errors
+    /// When there are fewer than 4 points, one is not finite, or all lie in a plane; see [`Hull::new`].
+    pub fn hull(points: &[Vec3]) -> Result<Shape, ShapeError> {
+        Ok(Shape::Hull(Arc::new(Hull::new(points)?)))
+    }
+
+    /// The ground: all points with y at or below 0.
     #[must_use]
-    pub fn half_thickness(&self) -> f32 {
-        match self {
-            Shape::Sphere(s) => s.radius,
-            Shape::Cuboid(c) => c.half_extents.min_element(),
-            _ => f32::INFINITY,
+    pub fn half_space() -> Shape {
+        Shape::HalfSpace
+    }
+
+    /// Several convex shapes held rigidly together, each at a pose in the compound's frame.
+    ///
+    /// # Errors
+    /// When there is no part, a part is a half-space, mesh or compound, or a pose is not possible; see [`Compound::new`].
+    pub fn compound(parts: Vec<(Pose, Shape)>) -> Result<Shape, ShapeError> {
+        Ok(Shape::Compound(Arc::new(Compound::new(parts)?)))
+    }
+
+    /// A closed triangle mesh, wound counter-clockwise seen from outside (metres).
+    ///
+    /// # Errors
+    /// When the mesh is open or otherwise not the surface of a solid; see [`Mesh::new`].
+    pub fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Shape, ShapeError> {
+        Ok(Mesh::new(vertices, triangles)?.into())
+    }
+}
+
+impl From<Mesh> for Shape {
+    fn from(mesh: Mesh) -> Shape {
+        Shape::Mesh(Arc::new(mesh))
+    }
+}
+
+impl From<MeshError> for ShapeError {
+    fn from(error: MeshError) -> ShapeError {
+        ShapeError::new("mesh", error.to_string())
+    }
+}
+
+fn positive(field: &'static str, value: f32) -> Result<f32, ShapeError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(ShapeError::new(field, format!("must be a finite number above 0, is {value}")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constructors_refuse_what_is_out_of_range() {
+        for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert_eq!(Shape::sphere(bad).unwrap_err().field, "radius");
+            assert_eq!(Shape::cuboid(Vec3::new(1.0, bad, 1.0)).unwrap_err().field, "half_extents");
+            assert_eq!(Shape::capsule(1.0, bad).unwrap_err().field, "radius");
+            assert_eq!(Shape::cylinder(bad, 1.0).unwrap_err().field, "half_height");
         }
+        assert_eq!(Shape::capsule(-0.1, 1.0).unwrap_err().field, "half_height");
+        assert!(Shape::capsule(0.0, 1.0).is_ok());
+        let message = Shape::sphere(-1.0).unwrap_err().to_string();
+        assert_eq!(message, "radius: must be a finite number above 0, is -1");
     }
 }

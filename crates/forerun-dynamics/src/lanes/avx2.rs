@@ -1,0 +1,167 @@
+//! Lanes in AVX registers.
+//!
+//! # Safety
+//! Every function here uses AVX instructions without asking. All are inlined into functions that [`dispatched!`](super::dispatched) makes and calls
+//! only after it has detected AVX2; nothing else may use [`Avx2`].
+#![allow(unsafe_code, reason = "the one room that uses processor intrinsics")]
+
+use std::arch::x86_64::*;
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
+
+use super::{LANES, LaneMask, Lanes, Portable, Row};
+use crate::solver::Block;
+
+/// Eight numbers in a register.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(crate) struct Avx2(__m256);
+
+/// Eight truth values, each all ones or all zeros.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(crate) struct Avx2Mask(__m256);
+
+/// The same blocks, their numbers read as registers.
+#[inline(always)]
+pub(crate) fn as_avx2(blocks: &mut [Block<Portable>]) -> &mut [Block<Avx2>] {
+    const {
+        assert!(size_of::<Portable>() == size_of::<Avx2>() && align_of::<Portable>() == align_of::<Avx2>());
+        assert!(size_of::<Block<Portable>>() == size_of::<Block<Avx2>>());
+    }
+    // SAFETY: both are eight f32 at the same alignment; `Block` and all parts of it are repr(C), and every bit pattern is valid.
+    unsafe { std::slice::from_raw_parts_mut(blocks.as_mut_ptr().cast(), blocks.len()) }
+}
+
+impl Lanes for Avx2 {
+    type Mask = Avx2Mask;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Avx2(unsafe { _mm256_set1_ps(x) })
+    }
+
+    #[inline(always)]
+    fn from_array(lanes: [f32; LANES]) -> Self {
+        Avx2(unsafe { _mm256_loadu_ps(lanes.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; LANES] {
+        let mut lanes = [0.0; LANES];
+        unsafe { _mm256_storeu_ps(lanes.as_mut_ptr(), self.0) };
+        lanes
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Avx2(unsafe { _mm256_sqrt_ps(self.0) })
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Avx2(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> Avx2Mask {
+        Avx2Mask(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> Avx2Mask {
+        Avx2Mask(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
+        let row = |lane: usize| unsafe { _mm256_load_ps(rows[index[lane] as usize].0.as_ptr()) };
+        transpose([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)]).map(Avx2)
+    }
+
+    #[inline(always)]
+    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
+        let [a, b, c, d, e, f] = values.map(|v| v.0);
+        let zero = unsafe { _mm256_setzero_ps() };
+        let columns = transpose([a, b, c, d, e, f, zero, zero]);
+        for (lane, column) in columns.into_iter().enumerate() {
+            unsafe { _mm256_store_ps(rows[index[lane] as usize].0.as_mut_ptr(), column) };
+        }
+    }
+}
+
+/// Eight rows of eight to eight columns.
+#[inline(always)]
+fn transpose(r: [__m256; 8]) -> [__m256; 8] {
+    unsafe {
+        let (a0, a1) = (_mm256_unpacklo_ps(r[0], r[1]), _mm256_unpackhi_ps(r[0], r[1]));
+        let (a2, a3) = (_mm256_unpacklo_ps(r[2], r[3]), _mm256_unpackhi_ps(r[2], r[3]));
+        let (a4, a5) = (_mm256_unpacklo_ps(r[4], r[5]), _mm256_unpackhi_ps(r[4], r[5]));
+        let (a6, a7) = (_mm256_unpacklo_ps(r[6], r[7]), _mm256_unpackhi_ps(r[6], r[7]));
+        let (b0, b1) = (_mm256_shuffle_ps::<0x44>(a0, a2), _mm256_shuffle_ps::<0xee>(a0, a2));
+        let (b2, b3) = (_mm256_shuffle_ps::<0x44>(a1, a3), _mm256_shuffle_ps::<0xee>(a1, a3));
+        let (b4, b5) = (_mm256_shuffle_ps::<0x44>(a4, a6), _mm256_shuffle_ps::<0xee>(a4, a6));
+        let (b6, b7) = (_mm256_shuffle_ps::<0x44>(a5, a7), _mm256_shuffle_ps::<0xee>(a5, a7));
+        [
+            _mm256_permute2f128_ps::<0x20>(b0, b4),
+            _mm256_permute2f128_ps::<0x20>(b1, b5),
+            _mm256_permute2f128_ps::<0x20>(b2, b6),
+            _mm256_permute2f128_ps::<0x20>(b3, b7),
+            _mm256_permute2f128_ps::<0x31>(b0, b4),
+            _mm256_permute2f128_ps::<0x31>(b1, b5),
+            _mm256_permute2f128_ps::<0x31>(b2, b6),
+            _mm256_permute2f128_ps::<0x31>(b3, b7),
+        ]
+    }
+}
+
+impl LaneMask<Avx2> for Avx2Mask {
+    #[inline(always)]
+    fn select(self, yes: Avx2, no: Avx2) -> Avx2 {
+        Avx2(unsafe { _mm256_blendv_ps(no.0, yes.0, self.0) })
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        (unsafe { _mm256_movemask_ps(self.0) }) as u32
+    }
+}
+
+macro_rules! lanewise {
+    ($type:ident, $trait:ident, $method:ident, $intrinsic:ident) => {
+        impl $trait for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                $type(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    };
+}
+lanewise!(Avx2, Add, add, _mm256_add_ps);
+lanewise!(Avx2, Sub, sub, _mm256_sub_ps);
+lanewise!(Avx2, Mul, mul, _mm256_mul_ps);
+lanewise!(Avx2, Div, div, _mm256_div_ps);
+lanewise!(Avx2Mask, BitAnd, bitand, _mm256_and_ps);
+lanewise!(Avx2Mask, BitOr, bitor, _mm256_or_ps);
+
+impl Neg for Avx2 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Avx2(unsafe { _mm256_xor_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+}
+
+impl AddAssign for Avx2 {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Avx2 {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}

@@ -1,0 +1,128 @@
+//! Points of primitives that are looked up in the field of a mesh: corners, and points along edges and axes.
+
+use super::directions::Points;
+use crate::sdf::Samples;
+use crate::shape::{Capsule, Cuboid, Cylinder, Hull};
+use crate::{Shape, Vec3};
+
+/// The part of space that matters: the ball around the mesh.
+pub(super) struct Region {
+    pub(super) centre: Vec3,
+    pub(super) radius: f32,
+    /// Points along edges are to be no further apart than this. Metres.
+    pub(super) spacing: f32,
+}
+
+/// A ball of a rounded shape.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RoundPoint {
+    pub(super) centre: Vec3,
+    pub(super) radius: f32,
+}
+
+/// Most parts that the whole of an edge is cut into.
+const EDGE_PARTS_MAX: f32 = 1024.0;
+/// Most points on the axis of a capsule.
+const AXIS_PARTS_MAX: f32 = 32.0;
+/// Points on the side line of a cylinder that faces the mesh.
+const LINE_PARTS: u32 = 4;
+/// Directions in which the rim of a cylinder has a fixed point: every 45 degrees.
+const RIM: [(f32, f32); 8] = {
+    const D: f32 = std::f32::consts::FRAC_1_SQRT_2;
+    [(1.0, 0.0), (D, D), (0.0, 1.0), (-D, D), (-1.0, 0.0), (-D, -D), (0.0, -1.0), (D, -D)]
+};
+
+/// The points of a shape in its own frame; none for half-spaces. `gradient` tells which way is away from the mesh.
+pub(super) fn of<'a>(shape: &Shape, region: &Region, gradient: impl Fn(Vec3) -> Vec3) -> Option<Points<'a>> {
+    let mut points = Vec::new();
+    match shape {
+        Shape::Sphere(s) => {
+            return Some(Points::Round(vec![RoundPoint { centre: Vec3::ZERO, radius: s.radius }]));
+        }
+        Shape::Capsule(c) => return Some(Points::Round(capsule(c))),
+        Shape::Cuboid(c) => cuboid(c, region, &mut points),
+        Shape::Cylinder(c) => cylinder(c, gradient, &mut points),
+        Shape::Hull(hull) => hull_points(hull, region, &mut points),
+        Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
+    }
+    if points.is_empty() { None } else { Some(Points::Sharp(Samples::new(points))) }
+}
+
+/// Points on the axis, no further apart than half the radius: the balls about them sag less than a thirtieth of it.
+fn capsule(c: &Capsule) -> Vec<RoundPoint> {
+    let parts = (4.0 * c.half_height / c.radius).ceil().clamp(1.0, AXIS_PARTS_MAX);
+    (0..=parts as u32)
+        .map(|k| {
+            let along = 2.0 * (k as f32 / parts) - 1.0;
+            RoundPoint { centre: Vec3::new(0.0, along * c.half_height, 0.0), radius: c.radius }
+        })
+        .collect()
+}
+
+fn cuboid(c: &Cuboid, region: &Region, points: &mut Vec<Vec3>) {
+    let corner = |signs: u32| {
+        let sign = |axis: u32| if signs >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        Vec3::new(sign(0), sign(1), sign(2)) * c.half_extents
+    };
+    let spacing = region.spacing.min(2.0 * c.half_extents.min_element());
+    for signs in 0..8 {
+        vertex(corner(signs), region, points);
+        for axis in 0..3 {
+            if signs >> axis & 1 == 0 {
+                edge([corner(signs), corner(signs | 1 << axis)], region, spacing, points);
+            }
+        }
+    }
+}
+
+fn hull_points(hull: &Hull, region: &Region, points: &mut Vec<Vec3>) {
+    for v in &hull.vertices {
+        vertex(*v, region, points);
+    }
+    for e in &hull.edges {
+        edge(e.vertices.map(|v| hull.vertices[v as usize]), region, region.spacing, points);
+    }
+}
+
+/// Fixed points around both rims, and the line down the side that faces the mesh.
+fn cylinder(c: &Cylinder, gradient: impl Fn(Vec3) -> Vec3, points: &mut Vec<Vec3>) {
+    for y in [-c.half_height, c.half_height] {
+        points.extend(RIM.map(|(x, z)| Vec3::new(x * c.radius, y, z * c.radius)));
+    }
+    for k in 0..=LINE_PARTS {
+        let along = 2.0 * (k as f32 / LINE_PARTS as f32) - 1.0;
+        let on_axis = Vec3::new(0.0, along * c.half_height, 0.0);
+        let away = gradient(on_axis);
+        let across = Vec3::new(away.x, 0.0, away.z);
+        // Where the mesh is straight ahead along the axis, every side is the same and the rims have the points.
+        if across.length_squared() > 1e-6 {
+            points.push(on_axis - across.normalize() * c.radius);
+        }
+    }
+}
+
+fn vertex(v: Vec3, region: &Region, points: &mut Vec<Vec3>) {
+    if v.distance_squared(region.centre) <= region.radius * region.radius {
+        points.push(v);
+    }
+}
+
+/// The points that cut an edge into equal parts no longer than `spacing`, as far as they are in the region. They stay
+/// where they are on the edge when the shape moves.
+fn edge([a, b]: [Vec3; 2], region: &Region, spacing: f32, points: &mut Vec<Vec3>) {
+    let (along, length) = (b - a, a.distance(b));
+    let parts = (length / spacing).ceil().min(EDGE_PARTS_MAX);
+    // Where the edge's line enters and leaves the ball, as parts from a.
+    let to_centre = region.centre - a;
+    let middle = to_centre.dot(along) / length;
+    let half_squared = region.radius * region.radius - (to_centre.length_squared() - middle * middle);
+    // Negative where the line misses the ball; not a number where the edge has no length.
+    if !(half_squared >= 0.0) {
+        return;
+    }
+    let half = half_squared.sqrt();
+    let part = |distance: f32| (distance / length * parts).clamp(0.0, parts);
+    let (enter, leave) = (part(middle - half).ceil() as u32, part(middle + half) as u32);
+    let inner = enter.max(1)..=leave.min((parts as u32).saturating_sub(1));
+    points.extend(inner.map(|k| a + along * (k as f32 / parts)));
+}

@@ -1,0 +1,120 @@
+//! Reduction: a few manifolds that stand for many candidates.
+//!
+//! Sides of the contact are found by normal: the deepest candidate left and all whose normals are within 60 degrees of
+//! its own. Of each side up to eight points are kept that are far apart, deep ones first.
+
+use super::Candidate;
+use super::directions::Direction;
+use super::points::RoundPoint;
+use crate::Vec3;
+use crate::contact::{ContactPoint, Manifold};
+use crate::sdf::primitive::Surface;
+
+/// Most sides of a contact that are told apart.
+const SIDES_MAX: usize = 6;
+/// Most points of a side: two manifolds.
+const POINTS_MAX: usize = 8;
+/// Cosine of the widest angle between the normals of a side: 60 degrees.
+const SIDE_COSINE: f32 = 0.5;
+/// How much nearer to the chosen points a candidate counts for each metre that it is shallower than the deepest.
+///
+/// Without this the farthest points win, however shallow, and piles sink in and never rest.
+const DEPTH_PENALTY: f32 = 8.0;
+/// Points nearer to each other than this are one. Metres.
+const SAME_POINT: f32 = 0.005;
+/// Points weigh in the mean normal by how far they are above this much more than the smallest separation. Metres.
+const WEIGHT_BAND: f32 = 0.01;
+
+/// Appends the manifolds of the candidates.
+pub(super) fn reduce(candidates: &mut Vec<Candidate>, directions: &[Direction], out: &mut Vec<Manifold>) {
+    for _ in 0..SIDES_MAX {
+        let Some(seed) = deepest(candidates) else { return };
+        let normal = candidates[seed].normal;
+        // The seed first; the others stay in the order in which they were found.
+        let mut side = vec![candidates.remove(seed)];
+        candidates.retain(|c| {
+            let belongs = c.normal.dot(normal) > SIDE_COSINE;
+            if belongs {
+                side.push(*c);
+            }
+            !belongs
+        });
+        let direction = &directions[side[0].direction as usize];
+        let mut chosen = choose(&side, DEPTH_PENALTY * direction.margin / direction.reach);
+        for c in &mut chosen {
+            smooth(c, &directions[c.direction as usize]);
+        }
+        emit(&chosen, out);
+    }
+}
+
+/// The first of the candidates with the smallest separation.
+fn deepest(candidates: &[Candidate]) -> Option<usize> {
+    let mut best: Option<(usize, f32)> = None;
+    for (i, c) in candidates.iter().enumerate() {
+        if best.is_none_or(|(_, separation)| c.separation < separation) {
+            best = Some((i, c.separation));
+        }
+    }
+    best.map(|(i, _)| i)
+}
+
+/// Up to eight candidates of a side, the first among them: again and again the one farthest from those chosen, less a
+/// penalty for being shallow. `far_penalty` is that of the second four: the far side of a fast ring that comes in
+/// tilted is shallow now and deep at the end of the step.
+fn choose(side: &[Candidate], far_penalty: f32) -> Vec<Candidate> {
+    let mut chosen = vec![side[0]];
+    let mut distances_squared = vec![f32::INFINITY; side.len()];
+    while chosen.len() < POINTS_MAX {
+        let newest = chosen[chosen.len() - 1].position;
+        let penalty = if chosen.len() < POINTS_MAX / 2 { DEPTH_PENALTY } else { far_penalty };
+        let mut best: Option<(usize, f32)> = None;
+        for (i, c) in side.iter().enumerate() {
+            distances_squared[i] = distances_squared[i].min(c.position.distance_squared(newest));
+            if distances_squared[i] <= SAME_POINT * SAME_POINT {
+                continue;
+            }
+            let score = distances_squared[i].sqrt() - penalty * (c.separation - side[0].separation).max(0.0);
+            if score > best.map_or(SAME_POINT, |(_, s)| s) {
+                best = Some((i, score));
+            }
+        }
+        let Some((i, _)) = best else { break };
+        chosen.push(side[i]);
+    }
+    chosen
+}
+
+/// Replaces the normal of a candidate found in the field of a mesh by the smooth one.
+fn smooth(c: &mut Candidate, direction: &Direction) {
+    let Surface::Field(field) = &direction.surface else { return };
+    // Rounded shapes are looked up in the triangles; beyond the grid there is nothing to take differences of.
+    if c.radius > 0.0 || !field.contains(c.point) {
+        return;
+    }
+    let gradient = field.smooth_gradient(c.point);
+    // In the middle of thin parts the two sides cancel.
+    if gradient.length_squared() > 0.1 {
+        let point = RoundPoint { centre: c.point, radius: c.radius };
+        *c = direction.candidate(point, gradient.normalize(), c.separation, c.direction);
+    }
+}
+
+/// One manifold of up to four points, or two that share the points in turn.
+fn emit(chosen: &[Candidate], out: &mut Vec<Manifold>) {
+    let smallest = chosen[0].separation;
+    let weight = |c: &Candidate| (smallest + WEIGHT_BAND - c.separation).max(0.0);
+    let sum: Vec3 = chosen.iter().map(|c| c.normal * weight(c)).sum();
+    let normal = sum.try_normalize().unwrap_or(chosen[0].normal);
+    let manifolds = chosen.len().div_ceil(4);
+    for turn in 0..manifolds {
+        let nothing = ContactPoint { position: Vec3::ZERO, normal, separation: 0.0 };
+        let mut manifold = Manifold { normal, points: [nothing; 4], count: 0 };
+        for c in chosen.iter().skip(turn).step_by(manifolds) {
+            let point = ContactPoint { position: c.position, normal: c.normal, separation: c.separation };
+            manifold.points[manifold.count as usize] = point;
+            manifold.count += 1;
+        }
+        out.push(manifold);
+    }
+}

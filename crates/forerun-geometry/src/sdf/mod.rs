@@ -1,0 +1,84 @@
+//! Signed distance fields: what makes contact between meshes of any form quick.
+//!
+//! A mesh is looked at in two ways: as a *field* (how far is this point from the surface, and which way is out) and as
+//! *samples* (points of its surface). Contact looks the samples of one shape up in the field of the other, both ways;
+//! see [`crate::contact::mesh`].
+
+use crate::Vec3;
+use crate::shape::Mesh;
+
+mod bake;
+mod field;
+pub(crate) mod lanes;
+pub(crate) mod nearest;
+pub(crate) mod primitive;
+mod pseudo_normals;
+mod samples;
+
+pub use field::Field;
+pub use samples::Samples;
+
+use nearest::Skin;
+use pseudo_normals::{EdgeKind, PseudoNormals};
+
+/// All that contact needs to know of a mesh beyond its triangles, computed once. The default finds nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshCollider {
+    /// Signed distances; none for an open mesh, which has no inside.
+    pub field: Option<Field>,
+    /// Points of the surface: vertices, and points along long edges.
+    pub samples: Samples,
+    /// Distance from the origin to the farthest vertex. Metres.
+    pub radius: f32,
+    normals: PseudoNormals,
+}
+
+/// Most points along edges; longer spacings where there would be more.
+const EDGE_SAMPLES_MAX: f32 = 16_384.0;
+/// Points along an edge of middling length of an open mesh, whose thickness says nothing.
+const OPEN_EDGE_PARTS: f32 = 4.0;
+
+impl MeshCollider {
+    /// The collider of a mesh that is complete but for it. Takes some milliseconds for thousands of triangles.
+    ///
+    /// An open mesh gets no field: contact goes to its triangles, and only their front collides.
+    pub(crate) fn new(mesh: &Mesh) -> MeshCollider {
+        let normals = PseudoNormals::new(mesh);
+        let field = mesh.closed.then(|| bake::bake(Skin { mesh, normals: &normals }));
+        let samples = Samples::new(sample_points(mesh, &normals));
+        let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
+        MeshCollider { field, samples, radius, normals }
+    }
+
+    /// Memory that it takes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.field.as_ref().map_or(0, Field::bytes) + self.samples.bytes() + self.normals.bytes()
+    }
+}
+
+/// The vertices, and points along ridges and boundaries no further apart than the thickness of the mesh (of an open
+/// one, which has none, a quarter of their mean length): where the edges of two frames cross, no vertex is near.
+fn sample_points(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Vec3> {
+    let mut points = mesh.vertices.clone();
+    let sharp: Vec<[Vec3; 2]> = normals
+        .edges
+        .iter()
+        .zip(&normals.edge_kinds)
+        .filter(|(_, kind)| matches!(kind, EdgeKind::Ridge | EdgeKind::Boundary))
+        .map(|(edge, _)| edge.map(|v| mesh.vertices[v as usize]))
+        .collect();
+    let total = sharp.iter().map(|[a, b]| a.distance(*b)).sum::<f32>();
+    let wished = if mesh.closed {
+        2.0 * mesh.half_thickness()
+    } else {
+        total / (OPEN_EDGE_PARTS * sharp.len().max(1) as f32)
+    };
+    let spacing = wished.max(total / EDGE_SAMPLES_MAX);
+    for [a, b] in sharp {
+        // No parts, and no points, where the spacing is 0: there is no edge then.
+        let parts = (a.distance(b) / spacing).ceil() as u32;
+        points.extend((1..parts).map(|k| a + (b - a) * (k as f32 / parts as f32)));
+    }
+    points
+}

@@ -1,0 +1,172 @@
+//! Primitive: signed distances to simple shapes, with the interface of a field.
+//!
+//! Promise: exact for spheres, boxes, capsules, cylinders and half-spaces; for hulls exact near faces and edges, and
+//! never more than the true distance.
+
+use super::Field;
+use super::lanes::{Lanes, Lanes3, WIDTH};
+use super::nearest::Skin;
+use crate::Vec3;
+use crate::shape::{Capsule, Cuboid, Cylinder, Hull};
+
+/// Something that points can be looked up in: signed distance and gradient, in a frame of its own.
+#[derive(Clone, Debug)]
+pub(crate) enum Surface<'a> {
+    HalfSpace,
+    /// By radius.
+    Sphere(f32),
+    Cuboid(Cuboid),
+    Capsule(Capsule),
+    Cylinder(Cylinder),
+    /// By planes: unit normal and offset.
+    Hull(Vec<(Vec3, f32)>),
+    /// A closed mesh.
+    Field(&'a Field),
+    /// An open mesh: its front is outside. Points deeper behind it than a limit (metres) are not inside of anything.
+    Sheet(Skin<'a>, f32),
+}
+
+impl Surface<'_> {
+    /// Signed distance (metres) and gradient at eight points. Gradients are not quite unit.
+    #[inline]
+    pub(crate) fn look_up(&self, p: Lanes3) -> (Lanes, Lanes3) {
+        match self {
+            Surface::HalfSpace => (p.y, Lanes3::splat(Vec3::Y)),
+            Surface::Sphere(radius) => round(p, *radius),
+            Surface::Cuboid(c) => cuboid(p, c.half_extents),
+            Surface::Capsule(c) => {
+                let h = Lanes::splat(c.half_height);
+                let on_axis = p.y.max(Lanes::ZERO - h).min(h);
+                round(Lanes3 { y: p.y - on_axis, ..p }, c.radius)
+            }
+            Surface::Cylinder(c) => cylinder(p, *c),
+            Surface::Hull(planes) => hull(p, planes),
+            Surface::Field(field) => field.look_up(p),
+            Surface::Sheet(skin, depth_limit) => sheet(p, skin, *depth_limit),
+        }
+    }
+
+    /// Lower bounds of the signed distance at eight points, for culling.
+    #[inline]
+    pub(crate) fn lower_bound(&self, p: Lanes3) -> Lanes {
+        match self {
+            Surface::Field(field) => field.lower_bound(p),
+            Surface::Sheet(skin, depth_limit) => {
+                let mut bound = Lanes::ZERO;
+                for i in 0..WIDTH {
+                    bound.0[i] = skin.look_up(p.lane(i)).distance.abs() as f32 - depth_limit;
+                }
+                bound
+            }
+            _ => self.look_up(p).0,
+        }
+    }
+
+    /// Signed distance and gradient at one point; in a field from the triangles of its mesh, exact at any distance.
+    pub(crate) fn exact(&self, p: Vec3, skin: Option<&Skin<'_>>) -> (f32, Vec3) {
+        if let (Surface::Field(_), Some(skin)) = (self, skin) {
+            let signed = skin.look_up(p);
+            return (signed.distance as f32, signed.gradient);
+        }
+        let (d, g) = self.look_up(Lanes3::splat(p));
+        (d.0[0], g.lane(0))
+    }
+}
+
+/// Distance to a ball about the origin of what is left of the points.
+#[inline(always)]
+fn round(p: Lanes3, radius: f32) -> (Lanes, Lanes3) {
+    let length = p.length();
+    (length - Lanes::splat(radius), p.scaled(length.max(Lanes::splat(1e-9)).map(|l| 1.0 / l)))
+}
+
+#[inline(always)]
+fn with_sign_of(magnitude: Lanes, sign: Lanes) -> Lanes {
+    sign.below(Lanes::ZERO).select(Lanes::ZERO - magnitude, magnitude)
+}
+
+#[inline(always)]
+fn cuboid(p: Lanes3, half: Vec3) -> (Lanes, Lanes3) {
+    let one = Lanes::splat(1.0);
+    let (qx, qy, qz) = (
+        p.x.abs() - Lanes::splat(half.x),
+        p.y.abs() - Lanes::splat(half.y),
+        p.z.abs() - Lanes::splat(half.z),
+    );
+    let beyond = Lanes3 { x: qx.max(Lanes::ZERO), y: qy.max(Lanes::ZERO), z: qz.max(Lanes::ZERO) };
+    let (outside_distance, outside_gradient) = round(beyond, 0.0);
+    // Inside, the nearest face is the way out.
+    let inside_distance = qx.max(qy).max(qz);
+    let x_wins = qy.max(qz).below(qx);
+    let y_wins = qz.below(qy);
+    let inside_gradient = Lanes3 {
+        x: x_wins.select(one, Lanes::ZERO),
+        y: x_wins.select(Lanes::ZERO, y_wins.select(one, Lanes::ZERO)),
+        z: x_wins.select(Lanes::ZERO, y_wins.select(Lanes::ZERO, one)),
+    };
+    let outside = Lanes::ZERO.below(outside_distance);
+    let g = outside.select3(outside_gradient, inside_gradient);
+    let gradient = Lanes3 { x: with_sign_of(g.x, p.x), y: with_sign_of(g.y, p.y), z: with_sign_of(g.z, p.z) };
+    (outside.select(outside_distance, inside_distance), gradient)
+}
+
+#[inline(always)]
+fn cylinder(p: Lanes3, c: Cylinder) -> (Lanes, Lanes3) {
+    let radial = (p.x * p.x + p.z * p.z).sqrt();
+    let inverse = radial.max(Lanes::splat(1e-9)).map(|l| 1.0 / l);
+    let (across, along) = (radial - Lanes::splat(c.radius), p.y.abs() - Lanes::splat(c.half_height));
+    let (a, b) = (across.max(Lanes::ZERO), along.max(Lanes::ZERO));
+    let outside_distance = (a * a + b * b).sqrt();
+    let inverse_outside = outside_distance.max(Lanes::splat(1e-9)).map(|l| 1.0 / l);
+    let outside = Lanes::ZERO.below(outside_distance);
+    let side_wins = along.below(across);
+    let one = Lanes::splat(1.0);
+    let g_across = outside.select(a * inverse_outside, side_wins.select(one, Lanes::ZERO));
+    let g_along = outside.select(b * inverse_outside, side_wins.select(Lanes::ZERO, one));
+    let gradient =
+        Lanes3 { x: g_across * p.x * inverse, y: with_sign_of(g_along, p.y), z: g_across * p.z * inverse };
+    (outside.select(outside_distance, across.max(along)), gradient)
+}
+
+#[inline(always)]
+fn hull(p: Lanes3, planes: &[(Vec3, f32)]) -> (Lanes, Lanes3) {
+    let mut distance = Lanes::splat(f32::NEG_INFINITY);
+    let mut gradient = Lanes3::ZERO;
+    for (normal, offset) in planes {
+        let normal = Lanes3::splat(*normal);
+        let d = p.dot(normal) - Lanes::splat(*offset);
+        let wins = distance.below(d);
+        distance = wins.select(d, distance);
+        gradient = wins.select3(normal, gradient);
+    }
+    (distance, gradient)
+}
+
+/// The planes of a hull: its faces, and for each edge the plane halfway between its faces, which rounds the corner
+/// that a point beyond the edge would otherwise see too near.
+pub(crate) fn hull_planes(hull: &Hull) -> Vec<(Vec3, f32)> {
+    let faces = hull.faces.iter().map(|f| (f.normal, f.offset));
+    let edges = hull.edges.iter().filter_map(|e| {
+        let sum = hull.faces[e.faces[0] as usize].normal + hull.faces[e.faces[1] as usize].normal;
+        let normal = sum.try_normalize()?;
+        let offset = e.vertices.map(|v| normal.dot(hull.vertices[v as usize]));
+        Some((normal, offset[0].max(offset[1])))
+    });
+    faces.chain(edges).collect()
+}
+
+fn sheet(p: Lanes3, skin: &Skin<'_>, depth_limit: f32) -> (Lanes, Lanes3) {
+    let mut distance = Lanes::splat(f32::INFINITY);
+    let mut gradient = Lanes3::splat(Vec3::Y);
+    for i in 0..WIDTH {
+        let signed = skin.look_up(p.lane(i));
+        // Behind a boundary edge is beside the sheet; far behind the sheet is under a bridge.
+        let lost = signed.on_boundary || signed.distance < -f64::from(depth_limit);
+        if signed.distance < 0.0 && lost {
+            continue;
+        }
+        distance.0[i] = signed.distance as f32;
+        gradient.set_lane(i, signed.gradient);
+    }
+    (distance, gradient)
+}

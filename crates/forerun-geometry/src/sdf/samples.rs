@@ -1,0 +1,123 @@
+//! Samples: points of a surface that are looked up in the field of another, in a hierarchy of spheres.
+//!
+//! Promise: every vertex is a sample, and points along long edges are no further apart than asked.
+
+use super::lanes::{Lanes, Lanes3, WIDTH};
+use crate::Vec3;
+
+/// Points of a surface in leaves of 8, the leaves in nodes of 8.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// The points of leaf k; the last leaf repeats its last point.
+    points: Vec<Lanes3>,
+    /// Spheres around the leaves: lane l of block k is leaf 8 k + l.
+    leaves: Vec<Spheres>,
+    /// Spheres around the blocks of leaves: lane l of block k is leaf block 8 k + l.
+    nodes: Vec<Spheres>,
+    /// Number of points that are meant.
+    count: usize,
+}
+
+/// Eight spheres. Those that only fill the block up have a radius of minus infinity: near nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spheres {
+    pub(crate) centre: Lanes3,
+    pub(crate) radius: Lanes,
+}
+
+impl Samples {
+    /// Sorts the points into the hierarchy.
+    pub(crate) fn new(mut points: Vec<Vec3>) -> Samples {
+        sort_by_place(&mut points);
+        let leaves: Vec<&[Vec3]> = points.chunks(WIDTH).collect();
+        let nodes: Vec<&[Vec3]> = points.chunks(WIDTH * WIDTH).collect();
+        Samples {
+            points: leaves.iter().map(|leaf| block_of(leaf)).collect(),
+            leaves: leaves.chunks(WIDTH).map(Spheres::around).collect(),
+            nodes: nodes.chunks(WIDTH).map(Spheres::around).collect(),
+            count: points.len(),
+        }
+    }
+
+    /// How many points there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The points, in the order of the hierarchy. Metres.
+    pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
+        (0..self.count).map(|i| self.points[i / WIDTH].lane(i % WIDTH))
+    }
+
+    /// Memory that the points and spheres take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.points) + size_of_val(&*self.leaves) + size_of_val(&*self.nodes)
+    }
+
+    /// Calls `visit` with eight points, and the bits of those that are meant, for every leaf that `near` lets through:
+    /// it is asked about eight spheres at a time and answers with the bits of those that are near enough.
+    #[inline]
+    pub(crate) fn visit(&self, near: impl Fn(&Spheres) -> u32, mut visit: impl FnMut(&Lanes3, u32)) {
+        for (block, nodes) in self.nodes.iter().enumerate() {
+            let mut node_bits = near(nodes);
+            while node_bits != 0 {
+                let node = block * WIDTH + node_bits.trailing_zeros() as usize;
+                node_bits &= node_bits - 1;
+                let mut leaf_bits = near(&self.leaves[node]);
+                while leaf_bits != 0 {
+                    let leaf = node * WIDTH + leaf_bits.trailing_zeros() as usize;
+                    leaf_bits &= leaf_bits - 1;
+                    let meant = (self.count - leaf * WIDTH).min(WIDTH);
+                    visit(&self.points[leaf], (1_u32 << meant) - 1);
+                }
+            }
+        }
+    }
+}
+
+impl Spheres {
+    /// The spheres around up to eight groups of points.
+    fn around(groups: &[&[Vec3]]) -> Spheres {
+        let mut spheres = Spheres { centre: Lanes3::ZERO, radius: Lanes::splat(f32::NEG_INFINITY) };
+        for (i, group) in groups.iter().enumerate() {
+            let min = group.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
+            let max = group.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
+            let centre = (min + max) * 0.5;
+            let radius = group.iter().fold(0.0_f32, |r, p| r.max(p.distance(centre)));
+            spheres.centre.set_lane(i, centre);
+            // A little more, for what the sums below may lose.
+            spheres.radius.0[i] = radius * 1.0001 + 1e-6;
+        }
+        spheres
+    }
+}
+
+fn block_of(leaf: &[Vec3]) -> Lanes3 {
+    let mut block = Lanes3::ZERO;
+    for i in 0..WIDTH {
+        block.set_lane(i, leaf[i.min(leaf.len() - 1)]);
+    }
+    block
+}
+
+/// Sorts points so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
+fn sort_by_place(points: &mut [Vec3]) {
+    if points.len() <= WIDTH {
+        return;
+    }
+    let min = points.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
+    let max = points.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
+    let axis = (max - min).max_position();
+    let key = |p: &Vec3| [p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]];
+    points.sort_by(|a, b| {
+        let (a, b) = (key(a), key(b));
+        a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
+    });
+    let leaf_or_node = if points.len() > WIDTH * WIDTH { WIDTH * WIDTH } else { WIDTH };
+    let half = (points.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
+    let (low, high) = points.split_at_mut(half);
+    sort_by_place(low);
+    sort_by_place(high);
+}

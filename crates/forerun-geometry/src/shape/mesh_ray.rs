@@ -1,0 +1,161 @@
+//! Lines through a mesh: the nearest triangles that they meet, and from that how thick the mesh is.
+
+use glam::DVec3;
+
+use super::Mesh;
+use crate::Aabb;
+
+/// How many lines the thickness is measured along, at most.
+const PROBES: usize = 1024;
+/// The thinnest part of the surface that does not count, as sharp edges are thin without end.
+const THIN_EDGES: f64 = 0.05;
+
+/// The nearest triangle met on one of its sides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest {
+    /// Distance in lengths of the direction; infinite when there is none.
+    pub(crate) t: f64,
+    /// Which triangle.
+    pub(crate) triangle: u32,
+}
+
+impl Nearest {
+    const NONE: Nearest = Nearest { t: f64::INFINITY, triangle: u32::MAX };
+
+    /// Of equal distances the lower triangle, whatever the order of the tree.
+    fn offer(&mut self, t: f64, triangle: u32) {
+        if (t, triangle) < (self.t, self.triangle) {
+            *self = Nearest { t, triangle };
+        }
+    }
+}
+
+/// What a half line meets first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FirstHits {
+    /// The nearest triangle that faces the line's origin.
+    pub(crate) front: Nearest,
+    /// The nearest triangle that faces away.
+    pub(crate) back: Nearest,
+}
+
+impl Mesh {
+    /// The nearest triangles on a half line in the mesh's frame. `reach` says from what has been met how far it is still worth looking.
+    pub(crate) fn first_hits(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        reach: impl Fn(&FirstHits) -> f64,
+    ) -> FirstHits {
+        let inverse = direction.recip();
+        let mut first = FirstHits { front: Nearest::NONE, back: Nearest::NONE };
+        self.tree().walk(
+            |bounds| box_entry(bounds, origin, inverse),
+            |triangle| {
+                let corners = self.corners(triangle as usize).map(|v| v.as_dvec3() - origin);
+                if let Some((t, side)) = triangle_hit(direction, corners) {
+                    let nearest = if side == Side::Front { &mut first.front } else { &mut first.back };
+                    nearest.offer(t, triangle);
+                }
+                reach(&first)
+            },
+            f64::INFINITY,
+        );
+        first
+    }
+
+    /// Outward normal of a triangle, not of unit length.
+    pub(crate) fn face_vector(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.corners(triangle as usize).map(|v| v.as_dvec3());
+        (b - a).cross(c - a)
+    }
+
+    /// Half the thickness below which only a twentieth of the surface lies, measured from the middles of triangles straight
+    /// through to the other side.
+    pub(super) fn measure_half_thickness(&self) -> f32 {
+        let stride = self.triangles.len().div_ceil(PROBES);
+        let mut probes: Vec<(f64, f64)> = Vec::new();
+        for triangle in (0..self.triangles.len()).step_by(stride) {
+            let outward = self.face_vector(triangle as u32);
+            let [a, b, c] = self.corners(triangle).map(|v| v.as_dvec3());
+            let Some(inward) = (-outward).try_normalize() else {
+                continue;
+            };
+            let through = self.first_hits((a + b + c) / 3.0, inward, |first| first.back.t);
+            if through.back.t.is_finite() {
+                probes.push((through.back.t, outward.length()));
+            }
+        }
+        probes.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let area: f64 = probes.iter().map(|p| p.1).sum();
+        let mut thinner = 0.0;
+        for (thickness, part) in probes {
+            thinner += part;
+            if thinner >= THIN_EDGES * area {
+                return ((0.5 * thickness) as f32).min(self.bounds().half_extents().min_element());
+            }
+        }
+        self.bounds().half_extents().min_element()
+    }
+}
+
+#[derive(PartialEq)]
+enum Side {
+    Front,
+    Back,
+}
+
+/// Where a half line enters a box (0 inside); `None` when it misses. Slightly generous, so that rounding loses no triangle.
+fn box_entry(bounds: &Aabb, origin: DVec3, inverse_direction: DVec3) -> Option<f64> {
+    let near = (bounds.min.as_dvec3() - origin) * inverse_direction;
+    let far = (bounds.max.as_dvec3() - origin) * inverse_direction;
+    let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (a, b) = (near[axis], far[axis]);
+        // 0 * infinity: the line runs in a side of the box, which cuts nothing off.
+        if a.is_nan() || b.is_nan() {
+            continue;
+        }
+        enter = enter.max(a.min(b));
+        exit = exit.min(a.max(b));
+    }
+    (enter <= exit * (1.0 + 1e-12)).then_some(enter)
+}
+
+/// Distance to a triangle (its corners seen from the line's origin), and which side of it the line meets.
+///
+/// By the signs of the volumes between the line and each edge: two triangles compute the same number for a common edge but for its sign,
+/// so that no line slips through between them.
+fn triangle_hit(direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(f64, Side)> {
+    let d = direction;
+    let (u, v, w) = (d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b)));
+    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+        return None;
+    }
+    let sum = u + v + w;
+    if sum == 0.0 {
+        return None;
+    }
+    let point = (a * u + b * v + c * w) / sum;
+    let t = point.dot(d) / d.length_squared();
+    // The volumes are positive where the triangle turns clockwise seen from the origin: it shows its back.
+    (t >= 0.0).then_some((t, if sum < 0.0 { Side::Front } else { Side::Back }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh_make;
+    use crate::Vec3;
+
+    #[test]
+    fn thickness_of_known_solids() {
+        let about =
+            |found: f32, wanted: f32| assert!((found / wanted - 1.0).abs() < 0.03, "{found}, not {wanted}");
+        about(mesh_make::torus(0.4, 0.2, 48, 16).unwrap().half_thickness(), 0.2);
+        about(mesh_make::ball(0.7, 12).unwrap().half_thickness(), 0.7);
+        about(mesh_make::cuboid(Vec3::new(1.0, 0.02, 0.5)).unwrap().half_thickness(), 0.02);
+        about(mesh_make::cuboid(Vec3::new(0.1, 2.0, 0.1)).unwrap().half_thickness(), 0.1);
+        about(mesh_make::frame(Vec3::new(0.5, 0.06, 0.5), 0.08).unwrap().half_thickness(), 0.04);
+        about(mesh_make::ring(1.0, 0.9, 0.5, 64).unwrap().half_thickness(), 0.05);
+    }
+}

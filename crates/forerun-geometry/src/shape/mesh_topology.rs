@@ -1,0 +1,88 @@
+//! Mending and checking how the triangles of a mesh hang together.
+
+use super::MeshError;
+use crate::Vec3;
+
+/// Makes triangles name the first of the vertices at exactly the same position. Returns how many *used* vertices were merged away.
+pub(super) fn weld_equal(vertices: &[Vec3], triangles: &mut [[u32; 3]]) -> u32 {
+    // Adding 0 makes -0 and +0 one position.
+    let key = |i: u32| (vertices[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
+    order.sort_by_key(|&i| (key(i), i));
+    let mut first_of: Vec<u32> = (0..vertices.len() as u32).collect();
+    for pair in order.windows(2) {
+        if key(pair[0]) == key(pair[1]) {
+            first_of[pair[1] as usize] = first_of[pair[0] as usize];
+        }
+    }
+    let mut merged: Vec<u32> = Vec::new();
+    for index in triangles.iter_mut().flatten() {
+        let first = first_of[*index as usize];
+        if first != *index {
+            merged.push(*index);
+        }
+        *index = first;
+    }
+    merged.sort_unstable();
+    merged.dedup();
+    merged.len() as u32
+}
+
+/// Leaves out triangles without an area. Returns how many.
+pub(super) fn drop_degenerate(vertices: &[Vec3], triangles: &mut Vec<[u32; 3]>) -> u32 {
+    let before = triangles.len();
+    triangles.retain(|&[a, b, c]| {
+        let [p, q, r] = [a, b, c].map(|i| vertices[i as usize].as_dvec3());
+        a != b && b != c && c != a && (q - p).cross(r - p).length_squared() > 0.0
+    });
+    (before - triangles.len()) as u32
+}
+
+/// The vertices that triangles use, in their order; the triangles name them by their new indices.
+pub(super) fn drop_unused(vertices: Vec<Vec3>, triangles: &mut [[u32; 3]]) -> Vec<Vec3> {
+    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    if used.len() == vertices.len() {
+        return vertices;
+    }
+    let mut new_index = vec![0; vertices.len()];
+    for (new, &old) in used.iter().enumerate() {
+        new_index[old as usize] = new as u32;
+    }
+    for index in triangles.iter_mut().flatten() {
+        *index = new_index[*index as usize];
+    }
+    used.iter().map(|&i| vertices[i as usize]).collect()
+}
+
+/// Whether every edge belongs to exactly two triangles that pass it in opposite directions.
+pub(super) fn check_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
+    // (lower vertex, higher vertex, whether passed upwards), sorted: each edge is a run.
+    let mut edges: Vec<(u32, u32, bool)> = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .map(|(a, b)| (a.min(b), a.max(b), a < b))
+        .collect();
+    edges.sort_unstable();
+    let (mut open, mut twisted, mut crowded) = (Vec::new(), Vec::new(), Vec::new());
+    for run in edges.chunk_by(|e, f| (e.0, e.1) == (f.0, f.1)) {
+        match run {
+            [_] => open.push(run),
+            [a, b] if a.2 == b.2 => twisted.push(run),
+            [_, _] => {}
+            _ => crowded.push(run),
+        }
+    }
+    let ends = |run: &[(u32, u32, bool)]| [vertices[run[0].0 as usize], vertices[run[0].1 as usize]];
+    if let Some(run) = open.first() {
+        return Err(MeshError::Open { edges: open.len(), first: ends(run) });
+    }
+    if let Some(run) = crowded.first() {
+        return Err(MeshError::Crowded { edges: crowded.len(), first: ends(run), triangles: run.len() });
+    }
+    match twisted.first() {
+        Some(run) => Err(MeshError::Twisted { edges: twisted.len(), first: ends(run) }),
+        None => Ok(()),
+    }
+}

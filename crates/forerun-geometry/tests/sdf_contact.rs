@@ -1,0 +1,333 @@
+//! Contact with meshes against answers by formula.
+#![allow(dead_code, reason = "each test uses some of the common meshes")]
+
+use std::sync::Arc;
+
+use forerun_geometry::contact::mesh::mesh_manifolds;
+use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Mesh, Sphere};
+use forerun_geometry::{ContactPoint, Manifold, Motion, Placed, Pose, Quat, Shape, Vec3};
+
+#[path = "common/meshes.rs"]
+mod meshes;
+use meshes::{Random, Triangles};
+
+const MARGIN: f32 = 0.02;
+
+fn shape((vertices, triangles): Triangles) -> Shape {
+    Shape::Mesh(Arc::new(Mesh::open(vertices, triangles).expect("a valid mesh")))
+}
+
+fn torus() -> Shape {
+    shape(meshes::torus(0.5, 0.2, 48, 16))
+}
+
+fn at(shape: &Shape, position: Vec3) -> Placed<'_> {
+    Placed { shape, pose: Pose::from_position(position), motion: Motion::default() }
+}
+
+fn contact(first: &Placed, second: &Placed) -> Vec<Manifold> {
+    let mut out = Vec::new();
+    mesh_manifolds(first, second, MARGIN, &mut out);
+    for m in &out {
+        assert!((1..=4).contains(&m.count));
+        assert!(m.normal.is_normalized());
+        for p in points_of(m) {
+            assert!(p.normal.is_normalized() && p.position.is_finite() && p.separation.is_finite());
+        }
+    }
+    out
+}
+
+fn points_of(m: &Manifold) -> &[ContactPoint] {
+    &m.points[..m.count as usize]
+}
+
+fn all_points(manifolds: &[Manifold]) -> Vec<ContactPoint> {
+    manifolds.iter().flat_map(|m| points_of(m).to_vec()).collect()
+}
+
+fn smallest_separation(manifolds: &[Manifold]) -> f32 {
+    all_points(manifolds).iter().fold(f32::INFINITY, |m, p| m.min(p.separation))
+}
+
+#[test]
+fn a_torus_rests_on_the_ground_all_around() {
+    let (torus, ground) = (torus(), Shape::HalfSpace);
+    // The mesh's lowest vertices are at half a segment beside the bottom of the tube.
+    let lowest = 0.2 * libm::cosf(std::f32::consts::PI / 16.0);
+    for depth in [-0.01, 0.0, 0.01, 0.05] {
+        let found = contact(&at(&ground, Vec3::ZERO), &at(&torus, Vec3::Y * (lowest - depth)));
+        let points = all_points(&found);
+        assert_eq!(points.len(), 8);
+        let mut quadrants = [0; 4];
+        for p in &points {
+            assert!((p.separation + depth).abs() < 1e-5, "{} at depth {depth}", p.separation);
+            assert!(p.normal.distance(Vec3::Y) < 1e-6);
+            assert!((p.position.y + 0.5 * depth).abs() < 1e-5, "not midway: {}", p.position);
+            let ring = Vec3::new(p.position.x, 0.0, p.position.z).length();
+            assert!((ring - 0.5).abs() < 0.06, "off the ring: {ring}");
+            quadrants[usize::from(p.position.x > 0.0) + 2 * usize::from(p.position.z > 0.0)] += 1;
+        }
+        assert!(quadrants.iter().all(|n| *n > 0), "on one side: {quadrants:?}");
+    }
+}
+
+#[test]
+fn bodies_far_apart_do_not_touch() {
+    let (torus, ground, ball) = (torus(), Shape::HalfSpace, Shape::Sphere(Sphere { radius: 0.3 }));
+    assert!(contact(&at(&ground, Vec3::ZERO), &at(&torus, Vec3::Y * 0.25)).is_empty());
+    assert!(contact(&at(&torus, Vec3::ZERO), &at(&torus, Vec3::Y * 0.45)).is_empty());
+    assert!(contact(&at(&torus, Vec3::ZERO), &at(&torus, Vec3::X * 30.0)).is_empty());
+    assert!(contact(&at(&torus, Vec3::ZERO), &at(&ball, Vec3::Y * 0.4)).is_empty());
+    // A small ball in the hole of the torus touches nothing either.
+    let small = Shape::Sphere(Sphere { radius: 0.25 });
+    assert!(contact(&at(&torus, Vec3::ZERO), &at(&small, Vec3::ZERO)).is_empty());
+}
+
+#[test]
+fn crossing_frames_touch_edge_on_edge() {
+    let frame = shape(meshes::frame(0.5, 0.04));
+    // Turned by 45 degrees about y and lying a little inside: no vertex of one is near the other.
+    for overlap in [-0.01_f32, 0.005, 0.02] {
+        let lower = at(&frame, Vec3::ZERO);
+        let mut upper = at(&frame, Vec3::Y * (0.08 - overlap));
+        upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, std::f32::consts::FRAC_PI_4);
+        let found = contact(&lower, &upper);
+        let points = all_points(&found);
+        assert!(points.len() >= 4, "{} points at overlap {overlap}", points.len());
+        assert!((smallest_separation(&found) + overlap).abs() < 0.004, "{}", smallest_separation(&found));
+        let up = points.iter().filter(|p| p.normal.y > 0.95).count();
+        assert!(up >= 4, "{up} of {} normals point up", points.len());
+    }
+    // Upright across the lower one, edges only: a wedge on a wedge.
+    let lower = at(&frame, Vec3::ZERO);
+    let mut upper = at(&frame, Vec3::new(0.5, 0.555, 0.013));
+    upper.pose.rotation = Quat::from_axis_angle(Vec3::X, std::f32::consts::FRAC_PI_2);
+    let found = contact(&lower, &upper);
+    assert!(!found.is_empty(), "an upright frame on a bar of the other");
+}
+
+#[test]
+fn a_mesh_ball_touches_a_ball_where_the_formula_says() {
+    let mesh = shape(meshes::sphere(0.5, 48, 24));
+    let ball = Shape::Sphere(Sphere { radius: 0.3 });
+    let mut random = Random(5);
+    for _ in 0..50 {
+        let way = random.vector().normalize();
+        let overlap = 0.015 * random.number();
+        let found = contact(&at(&mesh, Vec3::ZERO), &at(&ball, way * (0.8 - overlap)));
+        assert!(!found.is_empty());
+        // Facets lie up to 4.3 mm inside of the ball.
+        assert!(
+            (smallest_separation(&found) + overlap).abs() < 0.006,
+            "{} for {overlap}",
+            smallest_separation(&found)
+        );
+        let deepest = all_points(&found).into_iter().min_by(|a, b| a.separation.total_cmp(&b.separation));
+        let deepest = deepest.expect("has points");
+        assert!(deepest.normal.dot(way) > 0.99, "{} instead of {way}", deepest.normal);
+        assert!(deepest.position.distance(way * (0.5 - 0.5 * overlap)) < 0.05);
+    }
+}
+
+#[test]
+fn primitives_on_a_mesh_plate_touch_as_on_a_plane() {
+    let plate = shape(meshes::cuboid(Vec3::new(2.0, 0.1, 2.0)));
+    let tilt = Quat::from_axis_angle(Vec3::Z, std::f32::consts::FRAC_PI_2);
+    let half = Vec3::new(0.3, 0.2, 0.1);
+    let cases = [
+        ("sphere", Shape::Sphere(Sphere { radius: 0.25 }), 0.25, Quat::IDENTITY, 1),
+        ("box", Shape::Cuboid(Cuboid { half_extents: half }), 0.2, Quat::IDENTITY, 4),
+        ("capsule", Shape::Capsule(Capsule { half_height: 0.4, radius: 0.1 }), 0.1, tilt, 2),
+        (
+            "upright capsule",
+            Shape::Capsule(Capsule { half_height: 0.4, radius: 0.1 }),
+            0.5,
+            Quat::IDENTITY,
+            1,
+        ),
+        ("cylinder", Shape::Cylinder(Cylinder { half_height: 0.4, radius: 0.1 }), 0.4, Quat::IDENTITY, 4),
+        ("lying cylinder", Shape::Cylinder(Cylinder { half_height: 0.4, radius: 0.1 }), 0.1, tilt, 2),
+        (
+            "compound",
+            Shape::Compound(Arc::new(Compound {
+                parts: [-0.5, 0.5]
+                    .map(|x| (Pose::from_position(Vec3::X * x), Shape::Cuboid(Cuboid { half_extents: half })))
+                    .to_vec(),
+            })),
+            0.2,
+            Quat::IDENTITY,
+            4,
+        ),
+    ];
+    for (name, shape, height, rotation, fewest) in cases {
+        for depth in [-0.015, 0.0, 0.01] {
+            let mut upper = at(&shape, Vec3::new(0.37, 0.1 + height - depth, -0.21));
+            upper.pose.rotation = rotation;
+            let points = all_points(&contact(&at(&plate, Vec3::ZERO), &upper));
+            assert!(points.len() >= fewest, "{name}: {} points at depth {depth}", points.len());
+            for p in &points {
+                assert!((p.separation + depth).abs() < 1e-3, "{name}: {} at depth {depth}", p.separation);
+                assert!(p.normal.y > 0.999, "{name}: normal {}", p.normal);
+                assert!((p.position.y - (0.1 - 0.5 * depth)).abs() < 1e-3, "{name}: {}", p.position);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_fast_body_is_seen_in_time() {
+    let (torus, ground) = (torus(), Shape::HalfSpace);
+    let still = at(&torus, Vec3::Y * 0.6);
+    assert!(contact(&at(&ground, Vec3::ZERO), &still).is_empty());
+    let fast = Placed { motion: Motion { linear: Vec3::Y * -0.5, ..Motion::default() }, ..still };
+    let found = contact(&at(&ground, Vec3::ZERO), &fast);
+    assert!((smallest_separation(&found) - 0.4).abs() < 0.005);
+    let away = Placed { motion: Motion { linear: Vec3::Y * 0.5, ..Motion::default() }, ..still };
+    assert!(contact(&at(&ground, Vec3::ZERO), &away).is_empty());
+    // Mesh on mesh, far outside the grid of the other: the gap is not taken for smaller than it is.
+    let lower = at(&torus, Vec3::Y * -0.2);
+    let found = contact(&lower, &fast);
+    assert!((smallest_separation(&found) - 0.4).abs() < 0.02, "{}", smallest_separation(&found));
+}
+
+#[test]
+fn swapping_the_bodies_mirrors_the_manifolds() {
+    let torus = torus();
+    let mut random = Random(7);
+    let mut touching = 0;
+    for _ in 0..40 {
+        let first = at(&torus, Vec3::ZERO);
+        let mut second = at(&torus, random.vector() * 0.8);
+        second.pose.rotation = Quat::from_axis_angle(random.vector().normalize(), 3.0 * random.number());
+        let (there, back) = (contact(&first, &second), contact(&second, &first));
+        assert_eq!(there.is_empty(), back.is_empty());
+        if there.is_empty() {
+            continue;
+        }
+        touching += 1;
+        assert!((smallest_separation(&there) - smallest_separation(&back)).abs() < 1e-5);
+        assert!(there[0].normal.dot(back[0].normal) < -0.99, "{} and {}", there[0].normal, back[0].normal);
+    }
+    assert!(touching > 10);
+}
+
+#[test]
+fn tori_overlap_as_deep_as_a_brute_force_says() {
+    let (major, minor) = (0.5, 0.2);
+    let (vertices, _) = meshes::torus(major, minor, 192, 64);
+    let torus = torus();
+    let mut random = Random(11);
+    let mut checked = 0;
+    for _ in 0..60 {
+        let mut second = at(&torus, random.vector() * 1.2);
+        second.pose.rotation = Quat::from_axis_angle(random.vector().normalize(), 3.0 * random.number());
+        // Depth of the finely sampled second torus in the exact first.
+        let distances =
+            vertices.iter().map(|v| meshes::torus_distance(major, minor, second.pose.transform_point(*v)));
+        let depth = distances.fold(f32::INFINITY, f32::min);
+        if !(-0.1..0.0).contains(&depth) {
+            continue;
+        }
+        checked += 1;
+        let found = smallest_separation(&contact(&at(&torus, Vec3::ZERO), &second));
+        assert!((found - depth).abs() < 0.02, "{found} instead of {depth}");
+    }
+    assert!(checked > 3, "only {checked} poses");
+}
+
+#[test]
+fn no_pose_gives_a_number_that_is_none() {
+    let shapes = [
+        torus(),
+        shape(meshes::l_shape()),
+        shape(meshes::frame(0.5, 0.04)),
+        Shape::HalfSpace,
+        Shape::Sphere(Sphere { radius: 0.3 }),
+        Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.3, 0.5, 0.1) }),
+        Shape::Capsule(Capsule { half_height: 0.3, radius: 0.2 }),
+        Shape::Cylinder(Cylinder { half_height: 0.3, radius: 0.2 }),
+    ];
+    let mut random = Random(13);
+    for _ in 0..300 {
+        for mesh in &shapes[..3] {
+            for other in &shapes {
+                let mut first = at(mesh, Vec3::ZERO);
+                let mut second = at(other, random.vector());
+                first.motion =
+                    Motion { linear: random.vector(), angular: random.vector(), about: random.vector() };
+                second.pose.rotation =
+                    Quat::from_axis_angle(random.vector().normalize(), 3.0 * random.number());
+                // `contact` checks the numbers; concentric shapes are the hardest.
+                contact(&first, &second);
+                second.pose = Pose::IDENTITY;
+                contact(&first, &second);
+            }
+        }
+    }
+    // Poses that are not numbers find nothing.
+    let nowhere = at(&shapes[0], Vec3::new(f32::NAN, 0.0, 0.0));
+    for other in &shapes {
+        assert!(contact(&nowhere, &at(other, Vec3::ZERO)).is_empty());
+    }
+}
+
+/// A hilly sheet, open, that faces up: squares of a metre, cut in two.
+fn terrain(height: impl Fn(f32, f32) -> f32) -> Shape {
+    let n = 8_u32;
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    for z in 0..=n {
+        for x in 0..=n {
+            let (px, pz) = (x as f32 - 4.0, z as f32 - 4.0);
+            vertices.push(Vec3::new(px, height(px, pz), pz));
+            if x < n && z < n {
+                let [a, b, c, d] = [0, 1, n + 2, n + 1].map(|k| z * (n + 1) + x + k);
+                triangles.extend([[a, d, c], [a, c, b]]);
+            }
+        }
+    }
+    shape((vertices, triangles))
+}
+
+#[test]
+fn an_open_sheet_holds_shapes_on_its_front_only() {
+    let flat = terrain(|_, _| 0.0);
+    let half_extents = Vec3::new(0.3, 0.2, 0.1);
+    let shapes = [
+        ("sphere", Shape::Sphere(Sphere { radius: 0.2 }), 1),
+        ("box", Shape::Cuboid(Cuboid { half_extents }), 4),
+        ("mesh box", shape(meshes::cuboid(half_extents)), 4),
+        ("cylinder", Shape::Cylinder(Cylinder { half_height: 0.2, radius: 0.3 }), 4),
+    ];
+    for (name, shape, fewest) in shapes {
+        for depth in [-0.01, 0.0, 0.02] {
+            let upper = at(&shape, Vec3::new(0.13, 0.2 - depth, 0.31));
+            let points = all_points(&contact(&at(&flat, Vec3::ZERO), &upper));
+            assert!(points.len() >= fewest, "{name}: {} points", points.len());
+            for p in &points {
+                assert!((p.separation + depth).abs() < 1e-4, "{name}: {} at {depth}", p.separation);
+                assert!(p.normal.y > 0.999, "{name}: {}", p.normal);
+            }
+        }
+        let below = at(&shape, Vec3::new(0.13, -3.0, 0.31));
+        assert!(contact(&at(&flat, Vec3::ZERO), &below).is_empty(), "{name} far below the sheet");
+        let beside = at(&shape, Vec3::new(4.4, -0.05, 0.31));
+        assert!(contact(&at(&flat, Vec3::ZERO), &beside).is_empty(), "{name} beside the sheet");
+    }
+}
+
+#[test]
+fn a_box_rests_on_the_ridge_of_a_sheet() {
+    // A ridge along x whose vertices are a metre apart; the box lies between two of them.
+    let ridge = terrain(|_, z| -0.5 * z.abs());
+    let slab = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.4, 0.1, 0.4) });
+    let found = contact(&at(&ridge, Vec3::ZERO), &at(&slab, Vec3::new(0.5, 0.09, 0.0)));
+    assert!((smallest_separation(&found) + 0.01).abs() < 1e-3, "{}", smallest_separation(&found));
+    let points = all_points(&found);
+    let spread =
+        points.iter().map(|p| p.position.x).fold((9.0_f32, -9.0_f32), |(a, b), x| (a.min(x), b.max(x)));
+    assert!(spread.1 - spread.0 > 0.4, "points from x = {} to {}", spread.0, spread.1);
+    // Points of the box's edges that are below the ridge see its slopes.
+    assert!(points.iter().all(|p| p.normal.y > 0.85));
+}
