@@ -141,11 +141,11 @@ impl MeshEntry {
         let scale = self.scale;
         if let Some(file) = &self.file {
             let triangles = mesh_file::read(&folder.join(file)).in_field("file")?;
-            self.from_triangles(triangles).in_field("file")
+            self.scaled(triangles).in_field("file")
         } else if let Some(t) = &self.torus {
             torus(t.radius * scale, t.tube_radius * scale, t.segments, t.sides).map_err(not_possible)
         } else if let Some(knot) = &self.torus_knot {
-            self.from_triangles(knot.build()).in_field("torus_knot")
+            self.scaled(knot.build()).in_field("torus_knot")
         } else if let Some(b) = &self.ball {
             ball(b.radius * scale, b.parts).map_err(not_possible)
         } else {
@@ -153,7 +153,7 @@ impl MeshEntry {
         }
     }
 
-    fn from_triangles(&self, triangles: Triangles) -> Result<Mesh, Fault> {
+    fn scaled(&self, triangles: Triangles) -> Result<Mesh, Fault> {
         let vertices = triangles.vertices.into_iter().map(|v| v * self.scale).collect();
         let make = if self.open { Mesh::open } else { Mesh::new };
         make(vertices, triangles.triangles).map_err(not_possible)
