@@ -342,6 +342,13 @@ const TOML: &[Bad] = &[
         says: &["-1"],
     },
     Bad {
+        what: "command at the start",
+        text: "[[commands]]\nset_gravity = [0, 0, 0]\nframe = 0\n",
+        line: 4,
+        field: "commands[0].frame",
+        says: &["1 or more, is 0"],
+    },
+    Bad {
         what: "command to nobody",
         text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\npush = { impulse = [1, 0, 0], body = \"b\" }\n",
         line: 6,
