@@ -239,7 +239,7 @@ impl<'a> Search<'a, '_> {
         let mut pairs = overlapping_pairs(&bounds);
         let is_in_frontier = |local: u32| in_frontier[around[local as usize] as usize];
         pairs.retain(|(a, b)| is_in_frontier(*a) || is_in_frontier(*b));
-        let contacts = find_contacts(&members, &pairs, &self.environment);
+        let mut contacts = find_contacts(&members, &pairs, &self.environment);
 
         let met_of = |local: u32| around[local as usize];
         for (a, b) in pairs {
@@ -252,13 +252,19 @@ impl<'a> Search<'a, '_> {
                 self.join_by_reach(b, a, next);
             }
         }
-        for contact in contacts {
-            let (first, second) = (met_of(contact.first), met_of(contact.second));
-            self.contacts.push(Contact { first, second, ..contact });
+        for contact in &mut contacts {
+            (contact.first, contact.second) = (met_of(contact.first), met_of(contact.second));
+            let (first, second) = (contact.first, contact.second);
             if self.met[first as usize].is_dynamic() && self.met[second as usize].is_dynamic() {
                 self.join_met(first, next);
                 self.join_met(second, next);
             }
+        }
+        // Mostly there is one round, and contacts are large: move them.
+        if self.contacts.is_empty() {
+            self.contacts = contacts;
+        } else {
+            self.contacts.append(&mut contacts);
         }
         for index in frontier {
             self.met[*index as usize].looked = true;

@@ -64,6 +64,7 @@ impl Arrival<'_> {
             self.wake_everyone(&mut entries);
         }
         let commanded = self.log.bodies_at(self.frame);
+        effects.retain(|body, _| commanded.contains(body));
         if commanded.is_empty() {
             return entries;
         }

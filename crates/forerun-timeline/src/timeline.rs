@@ -173,21 +173,23 @@ impl Timeline {
         if key.source == 0 {
             self.next_sequence = self.next_sequence.max(key.sequence.saturating_add(1));
         }
-        let was_true = self.stale.is_empty();
-        self.log.insert(key, change.clone());
-        match change.body() {
-            Some(body) => self.note_body(body, key.frame, &change),
-            None => self.note_gravity(key.frame),
+        if let Change::Add { body, def } = &change {
+            let definitions = Arc::make_mut(&mut self.definitions);
+            definitions.reserve(body.0 as usize + 1);
+            definitions.set_def(*body, Arc::new(BodyDef::clone(def)));
         }
-        if self.recompute_all {
-            for frame in (key.frame.0 - 1)..self.horizon().0 {
-                self.stale.entry(Frame(frame)).or_default().everyone = true;
-            }
-        }
-        if was_true && !self.stale.is_empty() {
-            self.stats.last_edit = Counters::default();
-        }
+        let body = change.body();
+        self.log.insert(key, change);
+        self.note(body, key.frame);
         Ok(())
+    }
+
+    /// Takes an accepted command back, as if it had never been sent. `false` when there is none of that key that acts after the oldest
+    /// frame. The name of a body that is not added after all is not used again.
+    pub fn retract(&mut self, key: &CommandKey) -> bool {
+        let Some(change) = self.log.remove(key) else { return false };
+        self.note(change.body(), key.frame);
+        true
     }
 
     /// Accepts commands in turn.
@@ -243,14 +245,26 @@ impl Timeline {
         }
     }
 
-    /// Notes what a new command to a body puts out of date.
-    fn note_body(&mut self, body: BodyId, frame: Frame, change: &Change) {
+    /// Notes what is out of date when there is another command, or one less, to a body (or to all) at a frame.
+    fn note(&mut self, body: Option<BodyId>, frame: Frame) {
+        let was_true = self.stale.is_empty();
+        match body {
+            Some(body) => self.note_body(body, frame),
+            None => self.note_gravity(frame),
+        }
+        if self.recompute_all {
+            for frame in (frame.0 - 1)..self.horizon().0 {
+                self.stale.entry(Frame(frame)).or_default().everyone = true;
+            }
+        }
+        if was_true && !self.stale.is_empty() {
+            self.stats.last_edit = Counters::default();
+        }
+    }
+
+    fn note_body(&mut self, body: BodyId, frame: Frame) {
         let horizon = self.horizon();
         let definitions = Arc::make_mut(&mut self.definitions);
-        definitions.reserve(body.0 as usize + 1);
-        if let Change::Add { def, .. } = change {
-            definitions.set_def(body, Arc::new(BodyDef::clone(def)));
-        }
         let before = definitions.history(body);
         definitions.rebuild_body(body, frame, self.log.of_body_from(body, frame));
         for frame in (frame.0..horizon.0).map(Frame) {
@@ -264,7 +278,6 @@ impl Timeline {
         }
     }
 
-    /// Notes what a new command to all bodies puts out of date.
     fn note_gravity(&mut self, frame: Frame) {
         let horizon = self.horizon();
         let definitions = Arc::make_mut(&mut self.definitions);

@@ -152,6 +152,22 @@ fn arrival_order_does_not_matter() {
 }
 
 #[test]
+fn a_command_taken_back_leaves_no_trace() {
+    let mut timeline = timeline(&far_piles(), 40);
+    let before = timeline.clone();
+    let removed = timeline.change(Frame(10), Change::Remove { body: BodyId(1) }).unwrap();
+    run(&mut timeline);
+    let gravity = timeline.change(Frame(12), Change::SetGravity { gravity: Vec3::X }).unwrap();
+    for _ in 0..7 {
+        let _ = timeline.advance();
+    }
+    assert!(timeline.retract(&removed) && timeline.retract(&gravity) && !timeline.retract(&removed));
+    run(&mut timeline);
+    assert_eq!(mismatches(&timeline, &before), (0, None));
+    assert_eq!(timeline.commands().count(), 0);
+}
+
+#[test]
 fn the_lookahead_is_bounded_and_the_past_is_dropped() {
     let settings = TimelineSettings { lookahead: 30, past: 5, area_m: None };
     let mut timeline = Timeline::new(&far_piles(), Environment::default(), settings).unwrap();

@@ -56,6 +56,12 @@ fn session(bodies: &[BodyDef], seed: u64, frames: u64) -> Session {
                 }
             }
             4 => {
+                let index = random.below(commands.len() as u64 + 1) as usize;
+                if index < commands.len() && timeline.retract(&commands[index].key) {
+                    commands.swap_remove(index);
+                }
+            }
+            5 => {
                 let ahead = 1 + random.below(6);
                 timeline.set_display(Frame(timeline.display().0 + ahead));
             }
@@ -63,7 +69,9 @@ fn session(bodies: &[BodyDef], seed: u64, frames: u64) -> Session {
                 for _ in 0..=random.below(12) {
                     let _ = timeline.advance();
                 }
-                let _ = timeline.snapshot();
+                let snapshot = timeline.snapshot();
+                let valid_to = snapshot.valid_to();
+                assert_eq!(timeline.audit(valid_to.minus(1 + random.below(3))), None);
             }
         }
     }
