@@ -134,3 +134,16 @@ fn edits_one_by_one() {
         }
     }
 }
+
+/// Many more sessions: `cargo test -p forerun-timeline --test oracle -- --ignored`.
+#[test]
+#[ignore = "takes minutes"]
+fn sessions_at_length() {
+    let pool = pool(2);
+    for seed in 1000..1150 {
+        for (name, bodies) in scenes::all() {
+            let session = pool.install(|| session(&bodies, seed, 60 + seed % 3 * 40));
+            assert_equals_full_run(name, &bodies, seed, &session);
+        }
+    }
+}
