@@ -8,6 +8,9 @@ use super::islands::Islands;
 use super::rotation::{angular_momentum, is_isotropic, times_inverse_inertia, turned};
 use crate::{BodyState, Environment, Member};
 
+/// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
+const SHALLOW_REST: u32 = 4;
+
 /// What the end of a frame needs to know about one body besides its rows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ending {
@@ -76,13 +79,18 @@ pub(crate) fn settle(
         }
         let calm = quiet(member, &next[i], environment);
         let before = member.state.rest.min(full);
-        let shallow = endings[i].overlap < 2.0 * settings.overlap_allowed_m;
-        next[i].rest = match (calm, before) {
-            (false, _) => 0,
-            (true, b) if b + 1 < full => b + 1,
-            // The last step into rest waits until the overlap has been pushed out.
-            (true, b) if b + 1 == full && !shallow => b,
-            (true, _) => full,
+        let overlap = endings[i].overlap;
+        let shallow = overlap < 2.0 * settings.overlap_allowed_m;
+        let counted = (before + 1).min(full);
+        next[i].rest = if !calm {
+            0
+        } else if overlap > settings.rest_overlap_m {
+            // Pushed on, even out of rest: a body between two frozen ones could not get out.
+            counted.min(full - 1)
+        } else if shallow && counted >= full.div_ceil(SHALLOW_REST) {
+            full
+        } else {
+            counted
         };
         if next[i].rest < full || before < full {
             fixpoint[islands.root(i)] = false;

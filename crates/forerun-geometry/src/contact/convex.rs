@@ -5,7 +5,8 @@
 //! 3. Otherwise the general axis: GJK where they are apart, the expanding polytope where they overlap.
 //!
 //! A face is preferred to the general axis by up to [`FACE_MARGIN`]: its four points are worth more than the last
-//! millimetres of the true distance, and the answer must not flip.
+//! millimetres of the true distance, and the answer must not flip. What is left of it after clipping must still be as
+//! deep as the general axis says, within the same margin: a corner that hangs over the face's edge touches elsewhere.
 
 use glam::DVec3;
 
@@ -31,6 +32,10 @@ const EXACT: f32 = 1.0e-4;
 
 /// The axis between two sides has this sine with the plane across a cylinder, at most.
 const ACROSS: f32 = 1.0e-3;
+
+/// Edges that enclose an angle with a smaller sine run alongside each other and touch in two points. About 1 degree: beside
+/// each other they are only where they cross, and both points are given the normal of that place.
+const ALONGSIDE: f32 = 0.02;
 
 /// A face, the solid that it belongs to, and how far the other is above it.
 #[derive(Clone, Copy)]
@@ -59,7 +64,9 @@ pub(super) fn convex_convex(
 
 /// Two cuboids that no face of theirs brings together: the nearest corner or edge, if they are about to meet there.
 pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) -> Option<Manifold> {
-    if first.motion == Motion::default() && second.motion == Motion::default() {
+    let cuboids = matches!((first.shape, second.shape), (Shape::Cuboid(_), Shape::Cuboid(_)));
+    let still = first.motion == Motion::default() && second.motion == Motion::default();
+    if !cuboids || still {
         return None;
     }
     let origin = first.pose.position;
@@ -71,13 +78,6 @@ pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) 
     let point = manifold.points[0];
     let closing = first.motion.of(point.position) - second.motion.of(point.position);
     (closing.dot(point.normal) > point.separation).then_some(manifold)
-}
-
-impl Motion {
-    /// Displacement of a point that moves along, to first order. Metres.
-    fn of(&self, point: Vec3) -> Vec3 {
-        self.linear + self.angular.cross(point - self.about)
-    }
 }
 
 fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
@@ -111,6 +111,7 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
     }
     if let (Some(face), Some(manifold)) = (face, on_face)
         && face.separation >= general.separation - face_margin
+        && manifold.deepest() <= general.separation + face_margin
     {
         return Some(manifold);
     }
@@ -181,7 +182,7 @@ impl Axis {
         if let (Some(edge_a), Some(edge_b)) = (a.edge(normal), b.edge(-normal)) {
             let (rod_a, rod_b) =
                 (Rod { ends: edge_a, radius: a.radius }, Rod { ends: edge_b, radius: b.radius });
-            if let Some(ends) = parallel_ends(&rod_a, &rod_b) {
+            if let Some(ends) = parallel_ends(&rod_a, &rod_b, ALONGSIDE) {
                 let ends =
                     ends.map(|(on_a, on_b)| at(on_a, on_b, (on_b - on_a).dot(normal) - a.radius - b.radius));
                 let near = |point: &ContactPoint| point.separation < margin;

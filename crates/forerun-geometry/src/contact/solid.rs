@@ -37,16 +37,27 @@ enum Core<'a> {
 }
 
 impl<'a> Solid<'a> {
-    /// A capsule, cuboid, cylinder or hull, seen from `origin`; none for other shapes.
+    /// A convex shape, seen from `origin`; none for others.
     pub(super) fn new(shape: &'a Shape, pose: &Pose, origin: Vec3) -> Option<Self> {
         let (core, radius) = match shape {
+            Shape::Sphere(s) => (Core::Segment { half_height: 0.0 }, s.radius),
             Shape::Capsule(c) => (Core::Segment { half_height: c.half_height }, c.radius),
             Shape::Cuboid(c) => (Core::Cuboid { half_extents: c.half_extents }, 0.0),
             Shape::Cylinder(c) => (Core::Cylinder { half_height: c.half_height, radius: c.radius }, 0.0),
             Shape::Hull(hull) => (Core::Hull(hull), 0.0),
-            Shape::Sphere(_) | Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
+            Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
         };
         Some(Solid { core, centre: pose.position - origin, axes: pose.axes(), radius })
+    }
+
+    /// Where its frame is.
+    pub(super) fn centre(&self) -> Vec3 {
+        self.centre
+    }
+
+    /// Puts its frame elsewhere.
+    pub(super) fn place(&mut self, centre: Vec3) {
+        self.centre = centre;
     }
 
     /// Polyhedra first, then cylinders, then capsules: whose faces are preferred.

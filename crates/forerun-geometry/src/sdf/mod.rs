@@ -2,7 +2,7 @@
 //!
 //! A mesh is looked at in two ways: as a *field* (how far is this point from the surface, and which way is out) and as
 //! *samples* (points of its surface). Contact looks the samples of one shape up in the field of the other, both ways;
-//! see [`crate::contact::mesh`].
+//! see [`crate::contact`].
 
 use crate::Vec3;
 use crate::shape::Mesh;

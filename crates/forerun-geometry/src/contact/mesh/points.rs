@@ -116,8 +116,8 @@ fn edge([a, b]: [Vec3; 2], region: &Region, spacing: f32, points: &mut Vec<Vec3>
     let to_centre = region.centre - a;
     let middle = to_centre.dot(along) / length;
     let half_squared = region.radius * region.radius - (to_centre.length_squared() - middle * middle);
-    // Negative where the line misses the ball; not a number where the edge has no length.
-    if !(half_squared >= 0.0) {
+    // The line misses the ball, or the edge has no length.
+    if half_squared < 0.0 || half_squared.is_nan() {
         return;
     }
     let half = half_squared.sqrt();
