@@ -34,7 +34,8 @@ pub(crate) enum Command {
     Bake(BakeArgs),
 }
 
-const SCENE_HELP: &str = "Built-in name, with sizes if wanted (dominoes, dominoes:1000), or a TOML or JSON file";
+const SCENE_HELP: &str =
+    "Built-in name, with sizes if wanted (dominoes, dominoes:1000), or a TOML or JSON file";
 
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {

@@ -172,7 +172,9 @@ mod tests {
 
     #[test]
     fn axes_end_at_round_numbers_not_below_the_data() {
-        for (value, end) in [(0.0, 1.0), (0.031, 0.04), (1.0, 1.0), (33.2, 40.0), (99.0, 100.0), (104.0, 120.0)] {
+        for (value, end) in
+            [(0.0, 1.0), (0.031, 0.04), (1.0, 1.0), (33.2, 40.0), (99.0, 100.0), (104.0, 120.0)]
+        {
             assert!((round_up(value) - end).abs() < 1e-9, "{value} -> {}", round_up(value));
         }
     }

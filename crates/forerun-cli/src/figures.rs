@@ -25,7 +25,12 @@ pub(crate) fn queue(title: &str, decoupled: &[QueueRow]) -> Panel {
     } else {
         "states of every body".clone_into(&mut lines[0].name);
     }
-    Panel { title: title.to_owned(), y_label: "states ahead of the display", legend: Legend::LowerRight, lines }
+    Panel {
+        title: title.to_owned(),
+        y_label: "states ahead of the display",
+        legend: Legend::LowerRight,
+        lines,
+    }
 }
 
 /// Display time and physics time against real time (figures 5.3, 5.6, 5.9, 5.13).

@@ -80,7 +80,10 @@ fn build_shape(entry: &ShapeEntry, meshes: &BTreeMap<String, Shape>) -> Result<S
         ShapeEntry::Box(b) => Shape::Cuboid(Cuboid { half_extents: Vec3::from_array(b.half_extents) }),
         ShapeEntry::Capsule(c) => Shape::Capsule(Capsule { half_height: c.half_height, radius: c.radius }),
         ShapeEntry::Cylinder(c) => Shape::Cylinder(Cylinder { half_height: c.half_height, radius: c.radius }),
-        ShapeEntry::Hull(hull) => { let _ = hull; return Err(Fault::new("hulls wait", "")) }
+        ShapeEntry::Hull(hull) => {
+            let _ = hull;
+            return Err(Fault::new("hulls wait", ""));
+        }
         ShapeEntry::HalfSpace => Shape::HalfSpace,
         ShapeEntry::Compound(parts) => {
             let parts: Result<Vec<_>, Fault> =

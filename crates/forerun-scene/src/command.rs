@@ -102,7 +102,6 @@ pub enum SceneCommand {
     },
 }
 
-
 /// The bodies of a scene by number and name, and from which frame on they are there.
 pub(crate) struct Roster<'a> {
     since: Vec<u64>,

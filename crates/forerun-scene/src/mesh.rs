@@ -369,7 +369,8 @@ mod tests {
         knot.check().unwrap();
         let mesh = knot.build();
         assert_closed(&mesh);
-        let length: f32 = (0..1000).map(|i| knot.point(i, 1000).distance(knot.point((i + 1) % 1000, 1000))).sum();
+        let length: f32 =
+            (0..1000).map(|i| knot.point(i, 1000).distance(knot.point((i + 1) % 1000, 1000))).sum();
         // Pappus: section times the length of the middle line.
         let ratio = volume(&mesh) / (length * std::f32::consts::PI * 0.01);
         assert!((0.97..1.0).contains(&ratio), "{ratio}");

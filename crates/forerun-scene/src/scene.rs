@@ -186,9 +186,8 @@ impl Scene {
         let adds = self.commands.iter().any(|command| command.add.is_some());
         let meshes = if adds { self.build_meshes()? } else { BTreeMap::new() };
         let mut added = 0;
-        let build = |(i, command)| {
-            roster.build(command, (self, &meshes), &mut added).in_item(i).in_field("commands")
-        };
+        let build =
+            |(i, command)| roster.build(command, (self, &meshes), &mut added).in_item(i).in_field("commands");
         self.commands.iter().enumerate().map(build).collect()
     }
 

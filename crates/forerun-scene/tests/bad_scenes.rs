@@ -40,7 +40,13 @@ fn assert_reports(bad: &Bad, text: &str, format: Format) {
 const TOML: &[Bad] = &[
     Bad { what: "syntax", text: "[[bodies]]\nshape = = 3\n", line: 3, field: "", says: &["bad.toml:3:9"] },
     Bad { what: "unclosed table", text: "[settings\n", line: 2, field: "", says: &["]"] },
-    Bad { what: "key given twice", text: "seconds = 1\nseconds = 2\n", line: 3, field: "", says: &["duplicate"] },
+    Bad {
+        what: "key given twice",
+        text: "seconds = 1\nseconds = 2\n",
+        line: 3,
+        field: "",
+        says: &["duplicate"],
+    },
     Bad {
         what: "unknown field of the scene",
         text: "gravty = [0, -9.81, 0]\n",

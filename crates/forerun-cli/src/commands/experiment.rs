@@ -63,7 +63,9 @@ fn describe(found: &Calibration) -> String {
     } else {
         "on this machine no number of them is slow at impact and still in real time in the mean"
     };
-    format!("Calibrated: {bodies} meshes, {mean_ms:.1} ms a step in the mean, {impact_ms:.1} ms at impact: {verdict}.")
+    format!(
+        "Calibrated: {bodies} meshes, {mean_ms:.1} ms a step in the mean, {impact_ms:.1} ms at impact: {verdict}."
+    )
 }
 
 fn run_plan(plan: &Plan, args: &ExperimentArgs, note: &str) -> Result<Vec<Outcome>, Failure> {

@@ -56,7 +56,9 @@ pub(crate) fn main_job() -> Result<(), Failure> {
     let playback = play_with_bar(&scene, &settings)?;
     let files = write_files(&playback, &folder)?;
     print_result(&playback.report, &files)?;
-    print("\nNext: `forerun experiment all` sets the traditional model beside it; `forerun --help` lists the rest.")
+    print(
+        "\nNext: `forerun experiment all` sets the traditional model beside it; `forerun --help` lists the rest.",
+    )
 }
 
 /// Plays a scene with a progress bar where there is a terminal.
@@ -83,7 +85,10 @@ fn write_files(playback: &Playback, folder: &Path) -> Result<Vec<PathBuf>, Failu
 }
 
 fn print_result(report: &Report, files: &[PathBuf]) -> Result<(), Failure> {
-    print(&format!("{}, {}: {} pictures in {:.1} s", report.scene, report.driver, report.pictures, report.seconds))?;
+    print(&format!(
+        "{}, {}: {} pictures in {:.1} s",
+        report.scene, report.driver, report.pictures, report.seconds
+    ))?;
     print(&format!("  late pictures                {:>8}", report.late_pictures))?;
     print(&format!("  starved pictures             {:>8}", report.starved_pictures))?;
     print(&format!("  longest time between two     {:>8.1} ms", report.longest_stall_ms))?;

@@ -17,9 +17,13 @@ type Row = (&'static str, fn(&Outcome) -> String);
 
 const ROWS: [Row; 12] = [
     ("pictures", |o| o.playback.report.pictures.to_string()),
-    ("late pictures (over 1.5 intervals after the one before)", |o| o.playback.report.late_pictures.to_string()),
+    ("late pictures (over 1.5 intervals after the one before)", |o| {
+        o.playback.report.late_pictures.to_string()
+    }),
     ("longest time between two pictures, ms", |o| format!("{:.1}", o.playback.report.longest_stall_ms)),
-    ("starved pictures (a body had no state for the time)", |o| o.playback.report.starved_pictures.to_string()),
+    ("starved pictures (a body had no state for the time)", |o| {
+        o.playback.report.starved_pictures.to_string()
+    }),
     ("delay against real time, largest, s", |o| format!("{:.3}", o.playback.report.delay_max_s)),
     ("delay against real time at the end, s", |o| format!("{:.3}", delay_end_s(&o.playback))),
     ("states in the queue, fewest to most", |o| queue(&o.playback.report)),
@@ -68,7 +72,11 @@ fn delay_end_s(playback: &Playback) -> f64 {
 
 /// The coupled driver has no queue: what it computes is shown at once.
 fn queue(report: &Report) -> String {
-    if report.queue_max == 0 { "none".to_owned() } else { format!("{} to {}", report.queue_min, report.queue_max) }
+    if report.queue_max == 0 {
+        "none".to_owned()
+    } else {
+        format!("{} to {}", report.queue_min, report.queue_max)
+    }
 }
 
 fn shortest_step_ms(playback: &Playback) -> f64 {

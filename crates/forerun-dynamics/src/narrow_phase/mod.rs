@@ -1,8 +1,15 @@
 //! Narrow phase: where the bodies of a pair touch, or will within the frame.
 //!
 //! Promise: the manifolds of a pair depend on its two bodies, their states and the environment alone.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "kernels walk several short arrays side by side; the index is the point"
+)]
 
+mod cuboid_faces;
 mod cuboids;
+#[cfg(test)]
+mod tests;
 
 use forerun_geometry::{Manifold, Motion, Placed, Pose, Shape};
 use rayon::prelude::*;

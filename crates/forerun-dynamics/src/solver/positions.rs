@@ -32,8 +32,8 @@ pub(crate) fn moved(
         return fly(member.body, &member.state, environment, environment.settings.frame_seconds);
     }
     let scale = Scale::of(member);
-    let (velocity, spin) = scale.from_row(&bodies.velocities[i]);
-    let (shift, rotation) = scale.from_row(&bodies.displacements[i]);
+    let (velocity, spin) = scale.world_of(&bodies.velocities[i]);
+    let (shift, rotation) = scale.world_of(&bodies.displacements[i]);
     let turned_to = turned(member.state.rotation, rotation);
     let angular_velocity = carried(member, &scale.axes, ending.spin, spin, Mat3::from_quat(turned_to));
     BodyState {

@@ -82,13 +82,20 @@ impl<F: Lanes> Sides<F> {
     }
 }
 
+/// Faster than anything approaches. m/s
+const FREE_APPROACH: f32 = 1e6;
+
 dispatched! {
     /// One sweep over all blocks. A gap may close within the substep but not more; overlap is left to the shock propagation.
+    ///
+    /// An open point of a contact that may bounce is left alone when it approaches faster than `spared` (m/s; infinite: never): the next
+    /// substep's collision is to see it.
     pub(crate) fn sweep(
         blocks: &mut [Block],
         velocities: &mut [Row],
         displacements: &[Row],
         substep_seconds: f32,
+        spared: f32,
     ) => sweep_lanes
 }
 
@@ -98,26 +105,48 @@ fn sweep_lanes<F: Lanes>(
     velocities: &mut [Row],
     displacements: &[Row],
     substep_seconds: f32,
+    spared: f32,
 ) {
     let per_second = F::splat(1.0 / substep_seconds);
     for block in blocks {
         let mut v = Sides::gather(block, velocities);
         let moved = Sides::gather(block, displacements);
-        let sum = normals(block, &mut v, &moved, per_second);
+        let allowed = allowed(block, &v, &moved, (per_second, spared));
+        let sum = normals(block, &mut v, &allowed);
         friction(block, &mut v, sum);
         v.scatter(block, velocities);
     }
 }
 
+/// How fast each point may approach: so that its gap closes and no more.
+#[inline(always)]
+fn allowed<F: Lanes>(
+    block: &Block<F>,
+    v: &Sides<F>,
+    moved: &Sides<F>,
+    (per_second, spared): (F, f32),
+) -> [F; 4] {
+    let mut allowed = [F::zero(); 4];
+    for q in 0..4 {
+        let point = &block.points[q];
+        let row = point.jacobian();
+        let gap = (point.separation + moved.along(block, &row)).max(F::zero());
+        allowed[q] = gap * per_second;
+        if spared < f32::INFINITY {
+            let idle = point.impulse.le(F::zero()) & gap.gt(F::zero()) & block.restitution.gt(F::zero());
+            let fast = v.along(block, &row).lt(F::splat(-spared));
+            allowed[q] = (idle & fast).select(F::splat(FREE_APPROACH), allowed[q]);
+        }
+    }
+    allowed
+}
+
 /// Centre row, then the points. Returns the sum of the normal impulses.
 #[inline(always)]
-fn normals<F: Lanes>(block: &mut Block<F>, v: &mut Sides<F>, moved: &Sides<F>, per_second: F) -> F {
-    let mut allowed = [F::zero(); 4];
+fn normals<F: Lanes>(block: &mut Block<F>, v: &mut Sides<F>, allowed: &[F; 4]) -> F {
     let (mut allowed_sum, mut least) = (F::zero(), F::splat(1e30));
     for q in 0..4 {
         let point = &block.points[q];
-        let separation = point.separation + moved.along(block, &point.jacobian());
-        allowed[q] = separation.max(F::zero()) * per_second;
         let is_point = point.inverse_k.gt(F::zero());
         allowed_sum += is_point.select(allowed[q], F::zero());
         least = is_point.select(least.min(point.impulse), least);

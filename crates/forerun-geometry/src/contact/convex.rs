@@ -15,7 +15,7 @@ use super::clip::face_manifold;
 use super::gjk::{self, Distance, Witness};
 use super::reduce::TIE;
 use super::solid::Solid;
-use super::{ContactPoint, Manifold, Motion, Placed, any_perpendicular, penetration, unit_or};
+use super::{ContactPoint, Manifold, Placed, any_perpendicular, penetration, unit_or};
 use crate::{Pose, Shape, Vec3};
 
 /// By how much the general axis must beat the best face, for large shapes. Metres.
@@ -36,6 +36,9 @@ const ACROSS: f32 = 1.0e-3;
 /// Edges that enclose an angle with a smaller sine run alongside each other and touch in two points. About 1 degree: beside
 /// each other they are only where they cross, and both points are given the normal of that place.
 const ALONGSIDE: f32 = 0.02;
+
+/// Cuboids that move by less than this together are left to the next frame. Metres.
+const UNHURRIED: f32 = 5.0e-3;
 
 /// A face, the solid that it belongs to, and how far the other is above it.
 #[derive(Clone, Copy)]
@@ -65,19 +68,26 @@ pub(super) fn convex_convex(
 /// Two cuboids that no face of theirs brings together: the nearest corner or edge, if they are about to meet there.
 pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) -> Option<Manifold> {
     let cuboids = matches!((first.shape, second.shape), (Shape::Cuboid(_), Shape::Cuboid(_)));
-    let still = first.motion == Motion::default() && second.motion == Motion::default();
-    if !cuboids || still {
+    if !cuboids || first.reach() + second.reach() < UNHURRIED {
         return None;
     }
     let origin = first.pose.position;
     let a = Solid::new(first.shape, &first.pose, origin)?;
     let b = Solid::new(second.shape, &second.pose, origin)?;
-    let Distance::Apart(witness) = gjk::distance(&a, &b) else { return None };
+    let Distance::Apart(witness) = gjk::distance(&a, &b, margin) else { return None };
     let axis = Axis::from_witness(&a, &b, &witness);
     let manifold = axis.manifold(&a, &b, margin)?.moved(origin);
     let point = manifold.points[0];
     let closing = first.motion.of(point.position) - second.motion.of(point.position);
     (closing.dot(point.normal) > point.separation).then_some(manifold)
+}
+
+impl Placed<'_> {
+    /// Further than this none of its points moves. Metres.
+    fn reach(&self) -> f32 {
+        let arm = (self.motion.about - self.pose.position).length() + self.shape.radius_about(Vec3::ZERO);
+        self.motion.linear.length() + self.motion.angular.length() * arm
+    }
 }
 
 fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
@@ -95,7 +105,7 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
             return on_face;
         }
     }
-    let side = side_axis(a, b);
+    let side = side_axis(a, b, margin);
     if let Some(side) = &side {
         if side.separation >= margin {
             return None;
@@ -105,7 +115,7 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
             return side.manifold(a, b, margin);
         }
     }
-    let general = general_axis(a, b)?;
+    let general = general_axis(a, b, margin)?;
     if general.separation >= margin {
         return None;
     }
@@ -199,13 +209,14 @@ impl Axis {
 
 /// The axis between the side of a cylinder and whatever is nearest to it; none if there is no cylinder, if its cap or rim is
 /// nearer, or if an axis reaches into the other shape.
-fn side_axis(a: &Solid, b: &Solid) -> Option<Axis> {
+fn side_axis(a: &Solid, b: &Solid, margin: f32) -> Option<Axis> {
     let cylinders = [a.cylinder_axis(), b.cylinder_axis()];
     if cylinders == [None, None] {
         return None;
     }
     let (rod_a, rod_b) = (a.as_rod(), b.as_rod());
-    let Distance::Apart(witness) = gjk::distance(&rod_a, &rod_b) else { return None };
+    let enough = margin + rod_a.radius + rod_b.radius;
+    let Distance::Apart(witness) = gjk::distance(&rod_a, &rod_b, enough) else { return None };
     let mut normal = unit_or(witness.normal.as_vec3(), Vec3::Y);
     for axis in cylinders.into_iter().flatten() {
         let along = normal.dot(axis);
@@ -230,8 +241,8 @@ fn separation_along(a: &Solid, b: &Solid, normal: Vec3) -> f32 {
 }
 
 /// The axis of the true distance, or of the shortest way out of an overlap.
-fn general_axis(a: &Solid, b: &Solid) -> Option<Axis> {
-    match gjk::distance(a, b) {
+fn general_axis(a: &Solid, b: &Solid, margin: f32) -> Option<Axis> {
+    match gjk::distance(a, b, margin + a.radius + b.radius) {
         Distance::Apart(witness) => Some(Axis::from_witness(a, b, &witness)),
         Distance::Overlap(simplex) => {
             let witness = penetration::penetration(a, b, &simplex);

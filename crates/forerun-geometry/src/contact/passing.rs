@@ -52,7 +52,7 @@ pub(super) fn passes_by(first: &Placed, second: &Placed, manifold: &Manifold) ->
     let mut part = 0.0_f32;
     for _ in 0..ADVANCES_MAX {
         b.place(start + relative * part);
-        let Distance::Apart(witness) = gjk::distance(&a, &b) else { return false };
+        let Distance::Apart(witness) = gjk::distance(&a, &b, f32::INFINITY) else { return false };
         let gap = witness.separation as f32 - a.radius - b.radius;
         if gap < GRAZE {
             return false;

@@ -192,7 +192,10 @@ impl<'a> Solid<'a> {
                 let drum = Drum { centre: self.centre, axis: self.axes.y_axis, half_height, radius };
                 match drum.lowest(down, hint) {
                     Lowest::Side(ends) => ends.to_vec(),
-                    Lowest::Cap(rim) => between_too(rim, drum.cap(down).0),
+                    // Nearer to the lowest point than a quarter turn there are none: a coin that rolls on its rim would
+                    // be stopped by the next of them, which comes down in an arc and not as straight as it seems.
+                    Lowest::TiltedCap(rim) => rim.to_vec(),
+                    Lowest::FlatCap(rim) => between_too(rim, drum.cap(down).0),
                 }
             }
             Core::Cuboid { .. } | Core::Hull(_) => {

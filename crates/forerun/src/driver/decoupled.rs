@@ -167,11 +167,8 @@ impl Decoupled {
     /// [`DriverError::QueueFull`] when too many commands wait; [`DriverError::Panicked`]. Whether the change is possible is found
     /// out by the physics thread: see [`Decoupled::refusals`].
     pub fn change(&mut self, change: Change) -> Result<CommandKey, DriverError> {
-        let key = CommandKey {
-            frame: self.displayed_frame().next(),
-            source: 0,
-            sequence: self.next_sequence,
-        };
+        let key =
+            CommandKey { frame: self.displayed_frame().next(), source: 0, sequence: self.next_sequence };
         self.submit(Command { key, change })?;
         self.next_sequence += 1;
         Ok(key)

@@ -13,7 +13,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
 
 use arc_swap::ArcSwap;
-use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline};
+use forerun_timeline::{
+    Change, Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline,
+};
 
 use super::frame_notes::{FrameNote, FrameNotes};
 use crate::{BodyId, Threads};
@@ -50,7 +52,10 @@ impl Shared {
     /// `next_body` is the last name that the timeline gave away, and nobody has used.
     pub(super) fn new(timeline: &Timeline, next_body: BodyId) -> Self {
         Shared {
-            published: ArcSwap::from_pointee(Published { snapshot: timeline.snapshot(), stats: timeline.stats() }),
+            published: ArcSwap::from_pointee(Published {
+                snapshot: timeline.snapshot(),
+                stats: timeline.stats(),
+            }),
             notes: FrameNotes::with_capacity(NOTES_KEPT),
             panic: Mutex::new(None),
             next_body: AtomicU32::new(next_body.0),
@@ -166,10 +171,9 @@ impl Physics {
     }
 
     fn publish(&self) {
-        self.shared.published.store(Arc::new(Published {
-            snapshot: self.timeline.snapshot(),
-            stats: self.timeline.stats(),
-        }));
+        self.shared
+            .published
+            .store(Arc::new(Published { snapshot: self.timeline.snapshot(), stats: self.timeline.stats() }));
     }
 }
 

@@ -80,6 +80,8 @@ mod tests {
         let text = String::from_utf8(out).expect("digits and commas");
         let fields: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
         assert_eq!(fields, [13, 13, 13]);
-        assert!(text.lines().nth(1).is_some_and(|line| line.starts_with("0.500000,0.000000,0.000000,0,100,")));
+        assert!(
+            text.lines().nth(1).is_some_and(|line| line.starts_with("0.500000,0.000000,0.000000,0,100,"))
+        );
     }
 }

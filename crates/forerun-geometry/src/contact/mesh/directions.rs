@@ -68,7 +68,7 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         (shape, Shape::Mesh(mesh)) => {
             let region = region_of(mesh, &to_field.inverse(), margin);
             let gradient = |p: Vec3| {
-                let (_, g) = surface.exact(to_field.transform_point(p), None);
+                let (_, g) = surface.exact(to_field.transform_point(p), None, &mut None);
                 to_field.inverse_transform_vector(g)
             };
             points::of(shape, &region, gradient)?
