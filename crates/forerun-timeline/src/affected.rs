@@ -210,8 +210,7 @@ impl<'a> Search<'a, '_> {
     /// with; their indices, sorted by id.
     fn meet_near(&mut self, bounds: &[Aabb], mut ids: Vec<BodyId>) -> Vec<u32> {
         let others = self.inputs.table.population().saturating_sub(self.met.len());
-        let listed = others > bounds.len()
-            && bounds.iter().all(|bound| self.inputs.areas.near(self.inputs.frame, bound, &mut ids));
+        let listed = others > bounds.len() && self.inputs.areas.near(self.inputs.frame, bounds, &mut ids);
         if listed {
             ids.sort_unstable();
             ids.dedup();
