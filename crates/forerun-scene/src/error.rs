@@ -96,7 +96,7 @@ impl Fault {
         Fault { path: FieldPath::default(), message: message.into(), remedy: remedy.into() }
     }
 
-    fn under(mut self, step: Step) -> Fault {
+    pub(crate) fn under(mut self, step: Step) -> Fault {
         self.path.0.insert(0, step);
         self
     }

@@ -234,9 +234,10 @@ impl Scene {
 }
 
 impl CommandEntry {
-    /// The frame of a command; 0 when it has neither frame nor time, which the check refuses.
+    /// The frame of a command; 1 when it has neither frame nor time, which the check refuses.
     pub(crate) fn frame_in(&self, scene: &Scene) -> u64 {
-        self.frame.or(self.seconds.map(|seconds| scene.frame_at(seconds))).unwrap_or(0)
+        let given = self.frame.or(self.seconds.map(|seconds| scene.frame_at(seconds)));
+        given.unwrap_or_default().max(1)
     }
 }
 

@@ -95,8 +95,9 @@ impl Writer {
         self.optional("file", &mesh.file);
         self.optional("torus", &mesh.torus);
         self.optional("torus_knot", &mesh.torus_knot);
-        self.optional("sphere", &mesh.sphere);
+        self.optional("ball", &mesh.ball);
         self.field_unless(mesh.scale.to_bits() == 1.0_f32.to_bits(), "scale", &mesh.scale);
+        self.field_unless(!mesh.open, "open", &mesh.open);
     }
 
     fn body(&mut self, body: &BodyEntry) {
