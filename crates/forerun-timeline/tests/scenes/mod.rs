@@ -15,6 +15,7 @@ pub(crate) fn all() -> Vec<(&'static str, Vec<BodyDef>)> {
         ("rain", rain()),
         ("pusher", pusher()),
         ("lumps", lumps()),
+        ("field", field()),
     ]
 }
 
@@ -132,4 +133,19 @@ pub(crate) fn lumps() -> Vec<BodyDef> {
         bodies.push(BodyDef::new(shape).at(at));
     }
     bodies
+}
+
+/// Sixty-four boxes spread over a field without gravity, every third of them under way through the others.
+pub(crate) fn field() -> Vec<BodyDef> {
+    (0..64)
+        .map(|i| {
+            let (column, row) = ((i % 8) as f32, (i / 8) as f32);
+            let mut body = BodyDef::new(cuboid(0.4, 0.4, 0.4)).at(Vec3::new(2.0 * column, 0.0, 2.0 * row));
+            body.gravity_scale = 0.0;
+            if i % 3 == 0 {
+                body.velocity = Vec3::new(4.0 - column, 0.0, row - 3.5);
+            }
+            body
+        })
+        .collect()
 }
