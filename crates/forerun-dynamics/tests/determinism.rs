@@ -55,7 +55,7 @@ fn skipping_resting_islands_changes_nothing() {
         ball.gravity_scale = 0.5;
         defs.push(ball);
         let mut world = world_of(&defs);
-        let full = StepSettings::default().rest_frames;
+        let full = StepSettings::default().rest_frames();
         for _ in 0..400 {
             if !skip {
                 for state in world.states_mut() {
@@ -81,7 +81,7 @@ fn a_support_that_goes_wakes_what_it_carried() {
         cuboid(common::UNIT, Vec3::new(0.0, 1.5, 0.0)),
     ]);
     run(&mut world, 200);
-    let full = world.environment.settings.rest_frames;
+    let full = world.environment.settings.rest_frames();
     assert!(world.states()[2].rest > full, "the stack has not come to rest");
     // Moved away by hand, and awake as every moved body is.
     world.states_mut()[1].position.x = 10.0;

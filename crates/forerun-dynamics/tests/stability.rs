@@ -25,7 +25,7 @@ fn check(name: &str, defs: &[forerun_dynamics::BodyDef], frames: usize, limits: 
     let (sank, drifted) = settled(&world, &start);
     assert!(sank < limits.0, "{name}: sank by {sank} m, allowed {}", limits.0);
     assert!(drifted < limits.1, "{name}: drifted by {drifted} m, allowed {}", limits.1);
-    let full = world.environment.settings.rest_frames;
+    let full = world.environment.settings.rest_frames();
     let awake =
         world.bodies().iter().zip(world.states()).filter(|(b, s)| b.is_dynamic() && s.rest <= full).count();
     assert_eq!(awake, 0, "{name}: {awake} bodies are not at a fixpoint after {frames} frames");
@@ -85,7 +85,7 @@ fn friction_holds_up_to_its_angle() {
     for (friction, expected) in [(0.49, 0.5 * 9.81 * 25.0 * (0.447_21 - 0.49 * 0.894_43)), (0.51, 0.0)] {
         let def = with_material(cuboid(UNIT, Vec3::new(0.0, 0.5, 0.0)), friction, 0.0);
         let mut world = World::new(Environment { gravity: tilted_gravity(26.565), ..Environment::default() });
-        world.environment.settings.rest_frames = 0;
+        world.environment.settings.rest_seconds = 0.0;
         for def in [with_material(ground(), friction, 0.0), def] {
             world.add(&def).expect("the definition is possible");
         }

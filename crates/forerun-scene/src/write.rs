@@ -87,7 +87,8 @@ impl Writer {
         self.optional("recovery_speed_max", &s.recovery_speed_max);
         self.optional("shock_yield", &s.shock_yield);
         self.optional("rest_speed", &s.rest_speed);
-        self.optional("rest_frames", &s.rest_frames);
+        self.optional("rest_seconds", &s.rest_seconds);
+        self.optional("rest_overlap_m", &s.rest_overlap_m);
         self.optional("slices_max", &s.slices_max);
     }
 

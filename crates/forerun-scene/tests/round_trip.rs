@@ -72,7 +72,7 @@ overlap_recovery = 0.25
 recovery_speed_max = 1.5
 shock_yield = 0.75
 rest_speed = 0.01
-rest_frames = 0
+rest_seconds = 0.0
 slices_max = 16
 
 [meshes."a ring"]

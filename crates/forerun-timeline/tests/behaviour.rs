@@ -96,7 +96,7 @@ fn a_body_that_comes_and_goes_far_away_leaves_no_trace() {
 #[test]
 fn what_is_at_rest_costs_neither_work_nor_memory() {
     let mut environment = Environment::default();
-    environment.settings.rest_frames = 6;
+    environment.settings.rest_seconds = 0.1;
     let settings = TimelineSettings { lookahead: 400, past: 10, area_m: None };
     let mut timeline = Timeline::new(&far_piles(), environment, settings).unwrap();
     let mut last = 0;

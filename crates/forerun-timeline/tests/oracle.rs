@@ -15,7 +15,7 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 fn environment(seed: u64) -> Environment {
     let mut environment = Environment::default();
     if seed % 2 == 1 {
-        environment.settings.rest_frames = 6;
+        environment.settings.rest_seconds = 0.1;
     }
     environment
 }

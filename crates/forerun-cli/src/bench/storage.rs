@@ -11,5 +11,5 @@ pub(crate) fn bytes_per_body_frame(mut timeline: Timeline, frames: u32) -> Optio
     timeline.set_lookahead(frames.min(FRAMES_MAX));
     while let Progress::Advanced(_) = timeline.advance() {}
     let body_frames = timeline.bodies_at(timeline.horizon()).len() as u64 * timeline.horizon().0;
-    (body_frames > 0).then(|| timeline.horizon().0 as f64 / body_frames as f64)
+    (body_frames > 0).then(|| timeline.state_bytes() as f64 / body_frames as f64)
 }

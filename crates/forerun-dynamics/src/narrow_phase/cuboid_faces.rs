@@ -188,6 +188,10 @@ fn reference_corners<F: Lanes>(f: &Faces<F>, out: &mut [Candidate<F>; 12]) {
     }
 }
 
+/// The four directions in which the extreme points are kept: half a degree off the diagonals, or a box turned by 45 degrees on another would
+/// lose a corner to a tie.
+const EXTREMES: [(f32, f32); 4] = [(-0.99, -1.01), (1.01, -0.99), (0.99, 1.01), (-1.01, 0.99)];
+
 /// Keeps of twelve candidates the extreme one along each diagonal, the deeper the better.
 #[inline(always)]
 pub(super) fn clip_faces<F: Lanes>(a: &Box8<F>, b: &Box8<F>, axes: &Axes<F>, margin: F) -> Clipped {
@@ -197,7 +201,7 @@ pub(super) fn clip_faces<F: Lanes>(a: &Box8<F>, b: &Box8<F>, axes: &Axes<F>, mar
     reference_corners(&f, &mut candidates);
     let mut chosen = [Candidate::none(); 4];
     let mut chosen_index = [F::zero(); 4];
-    for (k, (su, sv)) in DIAGONALS.into_iter().enumerate() {
+    for (k, (su, sv)) in EXTREMES.into_iter().enumerate() {
         let (mut best_score, mut best, mut best_index) = (F::splat(-1e30), Candidate::none(), F::splat(-1.0));
         for (index, c) in candidates.iter().enumerate() {
             let usable = c.valid.gt(F::splat(0.5)) & c.separation.lt(margin);

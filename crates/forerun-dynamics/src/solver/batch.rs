@@ -13,7 +13,7 @@ use super::load::{Load, LoadPass};
 use super::positions::{Ending, moved, settle};
 use super::prepare::{Source, prepare};
 use super::shock::propagate_shock;
-use super::sweep::sweep;
+use super::sweep::{relax, sweep};
 use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
 use crate::lanes::{Portable, Row};
@@ -141,11 +141,11 @@ impl<'a> Batch<'a> {
             guard.check(blocks, &before, &mut bodies.velocities, guess);
             let sweeps = if substep == 0 { settings.first_sweeps } else { 1 };
             for _ in 0..sweeps {
-                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h, f32::INFINITY);
+                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
             }
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);
-            sweep(blocks, &mut bodies.velocities, &bodies.displacements, h, spared);
+            relax(blocks, &mut bodies.velocities, &bodies.displacements, h, spared);
         }
     }
 

@@ -67,11 +67,11 @@ pub(crate) fn settle(
     environment: &Environment,
 ) {
     let settings = &environment.settings;
-    if settings.rest_frames == 0 {
+    if settings.rest_frames() == 0 {
         next.iter_mut().for_each(|state| state.rest = 0);
         return;
     }
-    let full = settings.rest_frames;
+    let full = settings.rest_frames();
     let mut fixpoint = vec![true; members.len()];
     for (i, member) in members.iter().enumerate() {
         if !member.body.is_dynamic() {
