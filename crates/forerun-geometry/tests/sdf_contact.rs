@@ -334,3 +334,55 @@ fn a_box_rests_on_the_ridge_of_a_sheet() {
     // Points of the box's edges that are below the ridge see its slopes.
     assert!(points.iter().all(|p| p.normal.y > 0.85));
 }
+
+#[test]
+fn a_bar_pressed_into_another_is_pushed_back_the_way_it_came() {
+    let frame = shape(meshes::frame(0.5, 0.04));
+    for overlap in [0.005, 0.015, 0.025] {
+        let mut upper = at(&frame, Vec3::new(0.013, 0.08 - overlap, 0.021));
+        upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, 0.7);
+        let points = all_points(&contact(&at(&frame, Vec3::ZERO), &upper));
+        assert!(points.len() >= 4);
+        for p in &points {
+            assert!(p.normal.y > -0.2, "pulled in at overlap {overlap}: {p:?}");
+        }
+        let deepest = points.iter().min_by(|a, b| a.separation.total_cmp(&b.separation)).expect("points");
+        assert!(deepest.normal.y > 0.95 && (deepest.separation + overlap).abs() < 0.004, "{deepest:?}");
+    }
+}
+
+#[test]
+fn a_ball_in_the_hole_of_a_torus_is_held_all_around() {
+    // The hole has a radius of 0.3; a ball of 0.35 sits in its upper mouth where (0.5)² + y² = (0.35 + 0.2)².
+    let (torus, ball) = (torus(), Shape::Sphere(Sphere { radius: 0.35 }));
+    let height = (0.55_f32 * 0.55 - 0.25).sqrt();
+    let points = all_points(&contact(&at(&torus, Vec3::ZERO), &at(&ball, Vec3::Y * (height - 0.003))));
+    assert!(points.len() >= 3);
+    let middle = points.iter().map(|p| p.position).sum::<Vec3>() / points.len() as f32;
+    assert!(Vec3::new(middle.x, 0.0, middle.z).length() < 0.1, "all on one side: {middle}");
+    for p in &points {
+        // Facets are up to 4 mm inside the torus.
+        assert!(p.separation > -0.005 && p.separation < 0.012, "{}", p.separation);
+    }
+}
+
+#[test]
+fn a_hull_stands_on_a_mesh_like_the_box_that_it_is() {
+    let plate = shape(meshes::cuboid(Vec3::new(2.0, 0.1, 2.0)));
+    let half = Vec3::new(0.3, 0.2, 0.1);
+    let corners: Vec<Vec3> = meshes::cuboid(half).0;
+    let hull = Shape::Hull(Arc::new(forerun_geometry::shape::Hull::new(&corners).expect("a box")));
+    let cuboid = Shape::Cuboid(Cuboid { half_extents: half });
+    let found = [&hull, &cuboid].map(|shape| {
+        let mut upper = at(shape, Vec3::new(0.2, 0.3, 0.1));
+        upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, 0.3);
+        contact(&at(&plate, Vec3::ZERO), &upper)
+    });
+    assert_eq!(found[0].len(), found[1].len());
+    assert!((smallest_separation(&found[0]) - smallest_separation(&found[1])).abs() < 1e-5);
+    // And a mesh stands on a hull.
+    let upper = shape(meshes::cuboid(half));
+    let points = all_points(&contact(&at(&hull, Vec3::ZERO), &at(&upper, Vec3::new(0.1, 0.39, 0.0))));
+    assert!(points.len() >= 4);
+    assert!(points.iter().all(|p| (p.separation + 0.01).abs() < 1e-3 && p.normal.y > 0.999), "{points:?}");
+}
