@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use forerun_geometry::contact::contact_manifolds;
-use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Mesh, Sphere};
+use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Hull, Mesh, Sphere};
 use forerun_geometry::{ContactPoint, Manifold, Motion, Placed, Pose, Quat, Shape, Vec3};
 
 #[path = "common/meshes.rs"]
@@ -338,7 +338,7 @@ fn a_box_rests_on_the_ridge_of_a_sheet() {
 #[test]
 fn a_bar_pressed_into_another_is_pushed_back_the_way_it_came() {
     let frame = shape(meshes::frame(0.5, 0.04));
-    for overlap in [0.005, 0.015, 0.025] {
+    for overlap in [0.005_f32, 0.015, 0.025] {
         let mut upper = at(&frame, Vec3::new(0.013, 0.08 - overlap, 0.021));
         upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, 0.7);
         let points = all_points(&contact(&at(&frame, Vec3::ZERO), &upper));
@@ -371,7 +371,7 @@ fn a_hull_stands_on_a_mesh_like_the_box_that_it_is() {
     let plate = shape(meshes::cuboid(Vec3::new(2.0, 0.1, 2.0)));
     let half = Vec3::new(0.3, 0.2, 0.1);
     let corners: Vec<Vec3> = meshes::cuboid(half).0;
-    let hull = Shape::Hull(Arc::new(forerun_geometry::shape::Hull::new(&corners).expect("a box")));
+    let hull = Shape::Hull(Arc::new(Hull::new(&corners).expect("a box")));
     let cuboid = Shape::Cuboid(Cuboid { half_extents: half });
     let found = [&hull, &cuboid].map(|shape| {
         let mut upper = at(shape, Vec3::new(0.2, 0.3, 0.1));
@@ -380,9 +380,32 @@ fn a_hull_stands_on_a_mesh_like_the_box_that_it_is() {
     });
     assert_eq!(found[0].len(), found[1].len());
     assert!((smallest_separation(&found[0]) - smallest_separation(&found[1])).abs() < 1e-5);
-    // And a mesh stands on a hull.
-    let upper = shape(meshes::cuboid(half));
-    let points = all_points(&contact(&at(&hull, Vec3::ZERO), &at(&upper, Vec3::new(0.1, 0.39, 0.0))));
-    assert!(points.len() >= 4);
-    assert!(points.iter().all(|p| (p.separation + 0.01).abs() < 1e-3 && p.normal.y > 0.999), "{points:?}");
+}
+
+#[test]
+fn a_box_stands_on_one_of_the_same_size() {
+    // Every corner of one is exactly on an edge of the other: nothing says by itself which face it came through.
+    let half = Vec3::new(0.3, 0.2, 0.1);
+    let mesh = shape(meshes::cuboid(half));
+    let hull = Shape::Hull(Arc::new(Hull::new(&meshes::cuboid(half).0).expect("a box")));
+    let cuboid = Shape::Cuboid(Cuboid { half_extents: half });
+    for (name, lower, upper) in
+        [("mesh", &mesh, &mesh), ("cuboid", &cuboid, &mesh), ("hull", &mesh, &hull), ("box", &mesh, &cuboid)]
+    {
+        for aside in [Vec3::ZERO, Vec3::X * 0.1, Vec3::new(0.001, 0.0, -0.0005)] {
+            for depth in [-0.002, 0.0, 0.01] {
+                let found = contact(&at(lower, Vec3::ZERO), &at(upper, aside + Vec3::Y * (0.4 - depth)));
+                let points = all_points(&found);
+                assert!(points.len() >= 4, "{name}: {} points at depth {depth}, {aside}", points.len());
+                for p in &points {
+                    assert!(
+                        (p.separation + depth).abs() < 2e-3,
+                        "{name}: {} at {depth}, {aside}",
+                        p.separation
+                    );
+                    assert!(p.normal.y > 0.99, "{name}: {} at {depth}, {aside}", p.normal);
+                }
+            }
+        }
+    }
 }

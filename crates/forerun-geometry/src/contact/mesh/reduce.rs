@@ -102,14 +102,14 @@ struct Left {
 /// Replaces the normal of a candidate found in the field of a mesh by the smooth one.
 fn smooth(c: &mut Candidate, direction: &Direction) {
     let Surface::Field(field) = &direction.surface else { return };
-    // Rounded shapes are looked up in the triangles; beyond the grid there is nothing to take differences of.
-    if c.radius > 0.0 || !field.contains(c.point) {
+    // Beyond the grid there is nothing to take differences of.
+    if !c.rough || !field.contains(c.point) {
         return;
     }
     let gradient = field.smooth_gradient(c.point);
     // In the middle of thin parts the two sides cancel.
     if gradient.length_squared() > 0.1 {
-        let point = RoundPoint { centre: c.point, radius: c.radius };
+        let point = RoundPoint { centre: c.point, radius: 0.0 };
         *c = direction.candidate(point, gradient.normalize(), c.separation, c.direction);
     }
 }
