@@ -15,7 +15,11 @@ const GRADIENT_SQUARED_MIN: f32 = 0.01;
 /// an edge, or past the middle of a thin part, from being pushed out on the wrong side.
 const FACING_MAX: f32 = 0.2;
 
-/// Points that do not face the surface are asked again if they are inside it, or this close to it. Metres.
+/// The corners of boxes face what they stand on with a cosine of -0.58, edges and smooth surfaces better. Points that
+/// face the surface less well are asked again.
+const FACING_WELL: f32 = -0.45;
+
+/// They are if they are inside the surface, or this close to it. Metres.
 const BESIDE: f32 = 0.005;
 
 /// Points with their outward normals, in the field's frame.
@@ -30,8 +34,8 @@ struct Answers {
     normal: Lanes3,
     /// The bits of the points that are candidates.
     found: u32,
-    /// The bits of those that would be if they faced the surface.
-    not_facing: u32,
+    /// The bits of those near or inside the surface that do not face it well.
+    doubtful: u32,
     /// Where it was asked; see [`Direction::meet`].
     inset: f32,
 }
@@ -58,19 +62,22 @@ impl Direction<'_> {
                     points: points.transformed(&self.axes, self.origin),
                     outwards: normals.transformed(&self.axes, Vec3::ZERO),
                 };
-                let there = self.meet(&eight, 0.0, meant);
-                self.push(&eight, &there, index, candidates);
-                if there.not_facing != 0 && self.inset > 0.0 {
-                    let inside = self.meet(&eight, self.inset, there.not_facing);
+                let mut there = self.meet(&eight, 0.0, meant);
+                if there.doubtful != 0 && self.inset > 0.0 {
+                    let mut inside = self.meet(&eight, self.inset, there.doubtful);
+                    // Better than an answer that is good enough is only one without doubt.
+                    inside.found &= !inside.doubtful | !there.found;
+                    there.found &= !inside.found;
                     self.push(&eight, &inside, index, candidates);
                 }
+                self.push(&eight, &there, index, candidates);
             },
         );
     }
 
     /// What the field says to some of eight points, asked `inset` metres further inside their own surface.
     ///
-    /// There the surface that the points have come through is the nearest one even for the corners of a box that stands
+    /// There the face that the points have come through is the nearest one even for the corners of a box that stands
     /// exactly on another of the same size. The answer is carried back to the points along the normal found.
     #[inline(always)]
     fn meet(&self, eight: &Eight, inset: f32, asked: u32) -> Answers {
@@ -80,16 +87,18 @@ impl Direction<'_> {
         let distance = distance + normal.dot(back);
         let near = asked & distance.below(Lanes::splat(self.margin)).bits();
         if near == 0 {
-            return Answers { distance, normal, found: 0, not_facing: 0, inset };
+            return Answers { distance, normal, found: 0, doubtful: 0, inset };
         }
         let closing = normal.dot(self.motion_at(eight.points)).min(Lanes::ZERO);
-        let facing = normal.dot(eight.outwards).below(Lanes::splat(FACING_MAX)).bits();
+        let facing = normal.dot(eight.outwards);
         let found = near
-            & facing
+            & facing.below(Lanes::splat(FACING_MAX)).bits()
             & (distance + closing).below(Lanes::splat(self.near)).bits()
             & Lanes::splat(GRADIENT_SQUARED_MIN).below(gradient.dot(gradient)).bits();
-        let not_facing = near & !facing & distance.below(Lanes::splat(BESIDE)).bits();
-        Answers { distance, normal, found, not_facing, inset }
+        let doubtful = near
+            & distance.below(Lanes::splat(BESIDE)).bits()
+            & !facing.below(Lanes::splat(FACING_WELL)).bits();
+        Answers { distance, normal, found, doubtful, inset }
     }
 
     #[inline(always)]
