@@ -1,0 +1,207 @@
+//! Arguments: what was typed, checked for range.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Rigid-body physics that runs ahead of the display.
+///
+/// Without a command: the domino experiment, 30 seconds in real time, with charts.
+#[derive(Debug, Parser)]
+#[command(name = "forerun", version)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Open the interactive viewer
+    View(ViewArgs),
+    /// Play a scene against the clock; write queue.csv, report.json and charts
+    Run(RunArgs),
+    /// Repeat an experiment of the dissertation, decoupled beside coupled
+    Experiment(ExperimentArgs),
+    /// List the built-in scenes, or print one as a file
+    Scenes(ScenesArgs),
+    /// Edit a scene at random and compare every state with a full re-simulation, bit for bit
+    Check(CheckArgs),
+    /// Measure the step on scenes, with guards on its quality
+    Bench(BenchArgs),
+    /// Compare with formulas and measurements from the literature
+    Validate(ValidateArgs),
+    /// Write a simulation as an animated glTF file
+    Bake(BakeArgs),
+}
+
+const SCENE_HELP: &str =
+    "Built-in name, with sizes if wanted (dominoes, dominoes:1000), or a TOML or JSON file";
+
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    #[arg(help = SCENE_HELP)]
+    pub(crate) scene: Option<String>,
+}
+
+/// Who steps the physics, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DriverArg {
+    /// Physics runs ahead in a thread of its own
+    Decoupled,
+    /// Step, then show: the traditional model
+    Coupled,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    #[arg(help = SCENE_HELP)]
+    pub(crate) scene: String,
+    /// Length in seconds of real time
+    #[arg(long, default_value = "10", value_parser = seconds)]
+    pub(crate) seconds: f64,
+    /// Who steps the physics
+    #[arg(long, value_enum, default_value = "decoupled")]
+    pub(crate) driver: DriverArg,
+    /// Pictures per second
+    #[arg(long, default_value = "30", value_parser = fps)]
+    pub(crate) fps: f64,
+    /// Most frames that physics is ahead of the display
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) lookahead: u32,
+    /// Threads of the physics [default: one per core]
+    #[arg(long, value_parser = threads())]
+    pub(crate) threads: Option<u16>,
+    /// Folder for queue.csv, report.json and charts
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Print the report as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The dissertation's experiments (its chapter 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExperimentArg {
+    /// 255 dominoes in a spiral: figures 5.2 and 5.3
+    Dominoes,
+    /// Complex meshes that fall in a heap: figures 5.5 and 5.6
+    Meshes,
+    /// Dominoes, and a body added at 10 s: figures 5.8 and 5.9
+    Interaction,
+    /// A stack of 20, with and without return in time: figures 5.12 and 5.13
+    Stack,
+    /// All four
+    All,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExperimentArgs {
+    /// Which experiment
+    #[arg(value_enum)]
+    pub(crate) experiment: ExperimentArg,
+    /// Folder for the results; each experiment gets one of its own inside
+    #[arg(long, default_value = "forerun-experiments")]
+    pub(crate) out: PathBuf,
+    /// Length in seconds of real time [default: as in the dissertation's figures]
+    #[arg(long, value_parser = seconds)]
+    pub(crate) seconds: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ScenesArgs {
+    /// The scene to print, with sizes if wanted (pyramid:10)
+    pub(crate) name: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    #[arg(help = SCENE_HELP)]
+    pub(crate) scene: String,
+    /// Random edits
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) edits: u32,
+    /// Seed of the edits
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Frames that are kept and compared
+    #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) frames: u32,
+    /// Thread counts to compare, like 1,2,4
+    #[arg(long, value_delimiter = ',', default_value = "1,2", value_parser = threads())]
+    pub(crate) threads: Vec<u16>,
+    /// Print the result as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BenchArgs {
+    #[arg(required = true, help = SCENE_HELP)]
+    pub(crate) scenes: Vec<String>,
+    /// Frames to step
+    #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) frames: u32,
+    /// Threads of the physics
+    #[arg(long, default_value_t = 1, value_parser = threads())]
+    pub(crate) threads: u16,
+    /// Print the result as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ValidateArgs {
+    /// Cases to run [default: all]
+    pub(crate) cases: Vec<String>,
+    /// Exit with code 1 when a figure misses its limit
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BakeArgs {
+    #[arg(help = SCENE_HELP)]
+    pub(crate) scene: String,
+    /// The file to write
+    #[arg(short, long)]
+    pub(crate) output: PathBuf,
+    /// Length in seconds of simulated time
+    #[arg(long, default_value = "10", value_parser = seconds)]
+    pub(crate) seconds: f64,
+}
+
+fn threads() -> clap::builder::RangedI64ValueParser<u16> {
+    clap::value_parser!(u16).range(1..=256)
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    number_in(text, 0.1, 86_400.0)
+}
+
+fn fps(text: &str) -> Result<f64, String> {
+    number_in(text, 1.0, 1000.0)
+}
+
+fn number_in(text: &str, min: f64, max: f64) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("give a number from {min} to {max}"))?;
+    if (min..=max).contains(&value) { Ok(value) } else { Err(format!("give a number from {min} to {max}")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory as _;
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused_with_the_range() {
+        assert_eq!(seconds("30"), Ok(30.0));
+        for bad in ["0", "-1", "nan", "inf", "abc"] {
+            assert_eq!(seconds(bad), Err("give a number from 0.1 to 86400".into()), "{bad}");
+        }
+    }
+}

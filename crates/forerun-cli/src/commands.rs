@@ -1,0 +1,8 @@
+//! Commands: one room for each word after `forerun`.
+
+pub(crate) mod bench;
+pub(crate) mod check;
+pub(crate) mod experiment;
+pub(crate) mod run;
+pub(crate) mod scenes;
+pub(crate) mod validate;

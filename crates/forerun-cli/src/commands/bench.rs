@@ -1,0 +1,90 @@
+//! Bench: measures scenes one after the other; a Markdown table for people, one JSON object for programs.
+
+use std::num::NonZeroU16;
+
+use forerun::{Threads, TimelineSettings, timeline_of, world_of};
+use serde::Serialize;
+
+use crate::args::BenchArgs;
+use crate::bench::{Measurement, Run, bytes_per_body_frame, measure};
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+use crate::progress;
+use crate::scene_arg;
+
+#[derive(Serialize)]
+struct BenchReport {
+    scenes: Vec<Measurement>,
+}
+
+/// `forerun bench`.
+pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
+    // The argument's range begins at 1.
+    let count = NonZeroU16::new(args.threads).unwrap_or(NonZeroU16::MIN);
+    let threads = Threads::exactly(count).map_err(|error| Failure::Input(error.to_string()))?;
+    // All scenes are opened first: a misspelt name is not to cost the measurements before it.
+    let scenes = args.scenes.iter().map(|typed| scene_arg::open(typed)).collect::<Result<Vec<_>, _>>()?;
+    let mut measured = Vec::new();
+    for (typed, scene) in args.scenes.iter().zip(&scenes) {
+        let bar = progress::bar(u64::from(args.frames), typed);
+        let run = Run { scene: typed, frames: args.frames, thread_count: args.threads, threads: &threads };
+        let mut measurement = measure(world_of(scene)?, &run, &|frame| bar.set_position(u64::from(frame)));
+        let timeline = timeline_of(scene, TimelineSettings::default())?;
+        measurement.bytes_per_body_frame = bytes_per_body_frame(timeline, args.frames);
+        bar.finish_and_clear();
+        measured.push(measurement);
+    }
+    if args.json { print_json(&BenchReport { scenes: measured }) } else { print_tables(&measured) }
+}
+
+fn print_tables(measured: &[Measurement]) -> Result<(), Failure> {
+    print(
+        "| scene | bodies | frames | threads | mean ms | median ms | p99 ms | max ms | first ms | body-steps/s |",
+    )?;
+    print("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|")?;
+    for m in measured {
+        let (step, rate) = (m.step_ms, m.body_steps_per_s / 1e6);
+        print(&format!(
+            "| {} | {} | {} | {} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} | {rate:.2} M |",
+            m.scene,
+            m.bodies,
+            m.frames,
+            m.threads,
+            step.mean,
+            step.median,
+            step.p99,
+            step.max,
+            m.first_step_ms
+        ))?;
+    }
+    print(
+        "\n| scene | collisions | velocities | contact graph | contacts | shock propagation | positions |",
+    )?;
+    print("|---|---:|---:|---:|---:|---:|---:|")?;
+    for m in measured {
+        let cells: Vec<String> = m.stage_ms.in_order().iter().map(|ms| format!("{ms:.3}")).collect();
+        print(&format!("| {} | {} |", m.scene, cells.join(" | ")))?;
+    }
+    print(
+        "\n| scene | overlap max mm | at end mm | energy max/first | end speed m/s | B/body/frame | peak MiB | state hash |",
+    )?;
+    print("|---|---:|---:|---:|---:|---:|---:|---|")?;
+    measured.iter().try_for_each(print_guards)
+}
+
+fn print_guards(m: &Measurement) -> Result<(), Failure> {
+    let or_dash = |value: Option<f64>, decimals: usize| {
+        value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
+    };
+    print(&format!(
+        "| {} | {:.2} | {:.2} | {} | {:.4} | {} | {} | {} |",
+        m.scene,
+        1000.0 * m.overlap_max_m,
+        1000.0 * m.overlap_end_m,
+        or_dash(m.energy_max_over_initial, 5),
+        m.speed_end_mean,
+        or_dash(m.bytes_per_body_frame, 1),
+        or_dash(m.peak_rss_bytes.map(|bytes| bytes as f64 / 1024.0 / 1024.0), 1),
+        m.state_hash,
+    ))
+}

@@ -1,0 +1,127 @@
+//! Experiment: runs plans and writes tables, charts and a page each.
+
+use std::path::Path;
+
+use forerun::{PlaybackSettings, Scene};
+
+use super::run::{DISSERTATION_FRAME_SECONDS, play_with_bar};
+use crate::args::{ExperimentArg, ExperimentArgs};
+use crate::charts;
+use crate::experiment::{self, Calibration, Figure, FigureKind, Outcome, Plan, Variant};
+use crate::failure::Failure;
+use crate::figures::{self, Recorded};
+use crate::output::print;
+use crate::results::{make_folder, write_playback, write_text};
+use crate::scene_arg;
+
+/// How much of `meshes` the calibration looks at: to well after the first impact. Seconds.
+const CALIBRATION_SECONDS: f64 = 5.0;
+
+/// `forerun experiment`.
+pub(crate) fn run(args: &ExperimentArgs) -> Result<(), Failure> {
+    use ExperimentArg::{All, Dominoes, Interaction, Meshes, Stack};
+    let chosen = match args.experiment {
+        All => vec![Dominoes, Meshes, Interaction, Stack],
+        one => vec![one],
+    };
+    make_folder(&args.out)?;
+    for experiment in chosen {
+        let (plan, note) = plan_of(experiment)?;
+        let outcomes = run_plan(&plan, args, &note)?;
+        summarise(&plan, &outcomes, &args.out)?;
+    }
+    Ok(())
+}
+
+fn plan_of(experiment: ExperimentArg) -> Result<(Plan, String), Failure> {
+    let plain = |plan| Ok((plan, String::new()));
+    match experiment {
+        ExperimentArg::Dominoes | ExperimentArg::All => plain(experiment::dominoes(scene("dominoes:255")?)),
+        ExperimentArg::Interaction => plain(experiment::interaction(scene("interaction:255")?)),
+        ExperimentArg::Stack => plain(experiment::stack(scene("stack:20")?)),
+        ExperimentArg::Meshes => {
+            let (scene, found) =
+                experiment::meshes_for_this_machine(DISSERTATION_FRAME_SECONDS, CALIBRATION_SECONDS)?;
+            let note = describe(&found);
+            print(&note)?;
+            Ok((experiment::meshes(scene), note))
+        }
+    }
+}
+
+/// A built-in scene with the dissertation's frames.
+fn scene(name: &str) -> Result<Scene, Failure> {
+    let mut scene = scene_arg::open(name)?;
+    scene.frame_seconds = DISSERTATION_FRAME_SECONDS;
+    Ok(scene)
+}
+
+fn describe(found: &Calibration) -> String {
+    let Calibration { bodies, mean_ms, impact_ms, reached } = found;
+    let verdict = if *reached {
+        "slow at impact, in real time in the mean"
+    } else {
+        "on this machine no number of them is slow at impact and still in real time in the mean"
+    };
+    format!(
+        "Calibrated: {bodies} meshes, {mean_ms:.1} ms a step in the mean, {impact_ms:.1} ms at impact: {verdict}."
+    )
+}
+
+fn run_plan(plan: &Plan, args: &ExperimentArgs, note: &str) -> Result<Vec<Outcome>, Failure> {
+    let folder = args.out.join(plan.name);
+    let seconds = args.seconds.unwrap_or(plan.seconds);
+    let mut outcomes = Vec::new();
+    for variant in &plan.variants {
+        let Variant { label, driver, slices_max } = *variant;
+        let mut scene = plan.scene.clone();
+        if slices_max.is_some() {
+            scene.settings.slices_max = slices_max;
+        }
+        let settings = PlaybackSettings { driver, seconds, ..PlaybackSettings::default() };
+        let variant_folder = folder.join(label.replace(' ', "_"));
+        make_folder(&variant_folder)?;
+        let playback = play_with_bar(&scene, &settings)?;
+        write_playback(&playback, &variant_folder)?;
+        outcomes.push(Outcome { label, playback });
+    }
+    for figure in plan.figures {
+        draw(&figure, &outcomes, &folder)?;
+    }
+    write_text(&folder.join("report.md"), &experiment::markdown(plan, &outcomes, note))?;
+    Ok(outcomes)
+}
+
+fn draw(figure: &Figure, outcomes: &[Outcome], folder: &Path) -> Result<(), Failure> {
+    let recorded: Vec<Recorded> =
+        outcomes.iter().map(|o| Recorded { label: o.label, rows: &o.playback.rows }).collect();
+    // Every plan begins with the decoupled driver and ends with the coupled one.
+    let (Some(&decoupled), Some(&coupled)) = (recorded.first(), recorded.last()) else { return Ok(()) };
+    let times = || figures::times(figure.title, decoupled, Some(coupled));
+    let panels = match figure.kind {
+        FigureKind::Queue => vec![figures::queue(figure.title, decoupled.rows)],
+        FigureKind::Times => vec![times()],
+        FigureKind::TimesAndSteps => {
+            vec![times(), figures::time_steps("Shortest time step of the displayed frame", &recorded)]
+        }
+    };
+    charts::draw(&panels, &folder.join(figure.file)).map(|_| ())
+}
+
+fn summarise(plan: &Plan, outcomes: &[Outcome], out: &Path) -> Result<(), Failure> {
+    for Outcome { label, playback } in outcomes {
+        let report = &playback.report;
+        print(&format!(
+            "{:<12} {:<24} late {:>4} of {:>4}   longest {:>7.1} ms   delay {:>7.3} s   queue {} to {}",
+            plan.name,
+            label,
+            report.late_pictures,
+            report.pictures,
+            report.longest_stall_ms,
+            report.delay_max_s,
+            report.queue_min,
+            report.queue_max,
+        ))?;
+    }
+    print(&format!("wrote {}", out.join(plan.name).join("report.md").display()))
+}

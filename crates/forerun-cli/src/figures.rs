@@ -1,0 +1,70 @@
+//! Figures: the dissertation's two kinds of chart, states in the queue and time against time.
+
+use forerun::QueueRow;
+use plotters::style::RGBColor;
+
+use crate::charts::{
+    BLUE_LINE, GREEN_LINE, GREY_LINE, Legend, Line, ORANGE_LINE, PURPLE_LINE, Panel, Stroke,
+};
+
+/// A recorded playback and what the legend calls it.
+#[derive(Clone, Copy)]
+pub(crate) struct Recorded<'a> {
+    pub(crate) label: &'a str,
+    pub(crate) rows: &'a [QueueRow],
+}
+
+/// States in the queue at every picture (figures 5.2, 5.5, 5.8, 5.12).
+pub(crate) fn queue(title: &str, decoupled: &[QueueRow]) -> Panel {
+    let apart = decoupled.iter().any(|row| row.queue_min != row.queue_max);
+    let mut lines = vec![line("most states of a body", BLUE_LINE, decoupled, |row| f64::from(row.queue_max))];
+    if apart {
+        // Dashed, so that the other line shows through where the two are one.
+        let fewest = line("fewest states of a body", ORANGE_LINE, decoupled, |row| f64::from(row.queue_min));
+        lines.push(Line { stroke: Stroke::Dashed, ..fewest });
+    } else {
+        "states of every body".clone_into(&mut lines[0].name);
+    }
+    Panel {
+        title: title.to_owned(),
+        y_label: "states ahead of the display",
+        legend: Legend::LowerRight,
+        lines,
+    }
+}
+
+/// Display time and physics time against real time (figures 5.3, 5.6, 5.9, 5.13).
+pub(crate) fn times(title: &str, decoupled: Recorded, coupled: Option<Recorded>) -> Panel {
+    let rows = decoupled.rows;
+    let mut lines = vec![
+        line(&format!("physics, {}", decoupled.label), BLUE_LINE, rows, |row| row.time_physics_s),
+        line(&format!("display, {}", decoupled.label), GREEN_LINE, rows, |row| row.time_display_s),
+    ];
+    if let Some(coupled) = coupled {
+        let name = format!("physics = display, {}", coupled.label);
+        lines.push(line(&name, ORANGE_LINE, coupled.rows, |row| row.time_display_s));
+    }
+    let real = line("real time", GREY_LINE, rows, |row| row.time_real_s);
+    lines.push(Line { stroke: Stroke::Dashed, ..real });
+    Panel { title: title.to_owned(), y_label: "simulated time (s)", legend: Legend::UpperLeft, lines }
+}
+
+/// The time step of the displayed frame (figure 5.13).
+pub(crate) fn time_steps(title: &str, recorded: &[Recorded]) -> Panel {
+    const COLOURS: [RGBColor; 3] = [BLUE_LINE, PURPLE_LINE, ORANGE_LINE];
+    let lines = recorded.iter().zip(COLOURS.into_iter().cycle()).map(|(one, colour)| {
+        // The first picture shows the initial states, which no step has made.
+        line(one.label, colour, one.rows.get(1..).unwrap_or_default(), |row| 1000.0 * row.time_step_s)
+    });
+    Panel {
+        title: title.to_owned(),
+        y_label: "time step (ms)",
+        legend: Legend::LowerRight,
+        lines: lines.collect(),
+    }
+}
+
+fn line(name: &str, colour: RGBColor, rows: &[QueueRow], value: impl Fn(&QueueRow) -> f64) -> Line {
+    let points = rows.iter().map(|row| (row.time_real_s, value(row))).collect();
+    Line { name: name.to_owned(), colour, stroke: Stroke::Solid, points }
+}

@@ -1,0 +1,85 @@
+//! Settings of the step that a scene changes.
+
+use forerun_dynamics::StepSettings;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Fault, Within};
+use crate::range;
+
+/// What a scene file changes in the settings of the step; what is left out keeps its default. See
+/// [`StepSettings`] for what each does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SettingsEntry {
+    /// 1 to 64.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub substeps: Option<u32>,
+    /// 1 to 64.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_sweeps: Option<u32>,
+    /// Metres, 0 or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_margin_m: Option<f32>,
+    /// Metres, 0 or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub overlap_allowed_m: Option<f32>,
+    /// 0 to 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub overlap_recovery: Option<f32>,
+    /// m/s, 0 or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recovery_speed_max: Option<f32>,
+    /// 0 to 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shock_yield: Option<f32>,
+    /// m/s, 0 or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_speed: Option<f32>,
+    /// Seconds; 0 switches rest off.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_seconds: Option<f32>,
+    /// Metres, 0 or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_overlap_m: Option<f32>,
+    /// A power of two from 1 to 64.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slices_max: Option<u32>,
+}
+
+impl SettingsEntry {
+    pub(crate) fn check(&self) -> Result<(), Fault> {
+        let settings = self.over(StepSettings::default());
+        range::whole_between(settings.substeps, (1, 64), "substeps")?;
+        range::whole_between(settings.first_sweeps, (1, 64), "first_sweeps")?;
+        range::zero_or_more(settings.contact_margin_m, "contact_margin_m")?;
+        range::zero_or_more(settings.overlap_allowed_m, "overlap_allowed_m")?;
+        range::between(settings.overlap_recovery, (0.0, 1.0), "overlap_recovery")?;
+        range::zero_or_more(settings.recovery_speed_max, "recovery_speed_max")?;
+        range::between(settings.shock_yield, (0.0, 1.0), "shock_yield")?;
+        range::zero_or_more(settings.rest_speed, "rest_speed")?;
+        let slices = settings.slices_max;
+        if !(slices.is_power_of_two() && slices <= 64) {
+            let message = format!("must be 1, 2, 4, 8, 16, 32 or 64, is {slices}");
+            return Err(Fault::new(message, "1 switches the return in time off")).in_field("slices_max");
+        }
+        Ok(())
+    }
+
+    /// `settings` with what this changes.
+    pub(crate) fn over(&self, settings: StepSettings) -> StepSettings {
+        StepSettings {
+            substeps: self.substeps.unwrap_or(settings.substeps),
+            first_sweeps: self.first_sweeps.unwrap_or(settings.first_sweeps),
+            contact_margin_m: self.contact_margin_m.unwrap_or(settings.contact_margin_m),
+            overlap_allowed_m: self.overlap_allowed_m.unwrap_or(settings.overlap_allowed_m),
+            overlap_recovery: self.overlap_recovery.unwrap_or(settings.overlap_recovery),
+            recovery_speed_max: self.recovery_speed_max.unwrap_or(settings.recovery_speed_max),
+            shock_yield: self.shock_yield.unwrap_or(settings.shock_yield),
+            rest_speed: self.rest_speed.unwrap_or(settings.rest_speed),
+            rest_seconds: self.rest_seconds.unwrap_or(settings.rest_seconds),
+            slices_max: self.slices_max.unwrap_or(settings.slices_max),
+            rest_overlap_m: self.rest_overlap_m.unwrap_or(settings.rest_overlap_m),
+            ..settings
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Areas: the cells of a spatial grid, each with the bodies that visit it and when, so that who is near at a frame is a look-up
+//! (dissertation, section 3.2 and the grid of chapter 4).
+//!
+//! Promise: [`Areas::near`] names every body whose bound at that frame, as last told by [`Areas::visit`], shares an area with the
+//! asked bounds. It may name more: whoever asks compares bounds.
+
+use std::collections::BTreeMap;
+
+use forerun_dynamics::BodyId;
+use forerun_geometry::{Aabb, Vec3};
+
+use crate::Frame;
+
+/// A cell of the grid: its lowest corner divided by the edge of an area.
+pub type Area = [i32; 3];
+
+/// A bound over more areas than this is kept in one list for all of space.
+const AREAS_MAX: i64 = 64;
+
+/// Areas beyond this are one: farther than 2^24 edges an f32 has no finer position anyway.
+const AREA_LIMIT: f32 = 16_777_216.0;
+
+/// Past visits are forgotten once in so many frames: a pass over all of them is not worth it for each.
+const FORGET_EVERY: u64 = 32;
+
+/// The end of a visit that goes on until told otherwise.
+const OPEN: Frame = Frame(u64::MAX);
+
+/// A body may be in the area at frames from `enters` to before `leaves`.
+#[derive(Clone, Copy, Debug)]
+struct Visit {
+    body: BodyId,
+    enters: Frame,
+    leaves: Frame,
+}
+
+/// The areas that a bound covers, corners included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cover {
+    Areas {
+        min: Area,
+        max: Area,
+    },
+    /// Too many to list.
+    Large,
+}
+
+/// Where a visit is told of: bodies stay where they are beyond the last frame, not beyond one before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Until {
+    /// At this frame, and on from there until told otherwise: it is the last one.
+    FurtherNotice,
+    /// At this frame only.
+    NextFrame,
+}
+
+/// All areas with a visitor.
+#[derive(Clone, Debug)]
+pub(crate) struct Areas {
+    edge_m: f32,
+    visits: BTreeMap<Area, Vec<Visit>>,
+    /// Bodies over more than [`AREAS_MAX`] areas, sorted by body.
+    large: Vec<Visit>,
+    /// By body: what it covers at the last frame.
+    last: Vec<Option<Cover>>,
+    forgotten_to: Frame,
+}
+
+impl Areas {
+    /// No visitors. The edge of an area is in metres, above 0.
+    pub(crate) fn new(edge_m: f32) -> Areas {
+        Areas { edge_m, visits: BTreeMap::new(), large: Vec::new(), last: Vec::new(), forgotten_to: Frame(0) }
+    }
+
+    /// A body has this bound at a frame; `None` when it is not there.
+    pub(crate) fn visit(&mut self, body: BodyId, frame: Frame, bound: Option<&Aabb>, until: Until) {
+        let cover = bound.map(|bound| self.cover(bound));
+        if until == Until::NextFrame {
+            if let Some(cover) = cover {
+                self.for_each_list(cover, |list| extend(list, body, frame, frame.next()));
+            }
+            return;
+        }
+        let index = body.0 as usize;
+        if self.last.len() <= index {
+            self.last.resize(index + 1, None);
+        }
+        if self.last[index] == cover {
+            return;
+        }
+        if let Some(old) = std::mem::replace(&mut self.last[index], cover) {
+            self.for_each_list(old, |list| close(list, body, frame));
+        }
+        if let Some(new) = cover {
+            self.for_each_list(new, |list| extend(list, body, frame, OPEN));
+        }
+    }
+
+    /// Adds to `found` the bodies that may have a bound near one of these at a frame, in no order and perhaps twice. `false` when a
+    /// bound covers so much that everybody has to be asked.
+    pub(crate) fn near(&self, frame: Frame, bounds: &[Aabb], found: &mut Vec<BodyId>) -> bool {
+        let mut areas: Vec<Area> = Vec::with_capacity(4 * bounds.len());
+        for bound in bounds {
+            let Cover::Areas { min, max } = self.cover(bound) else { return false };
+            areas.extend(areas_between(min, max));
+        }
+        // Neighbours share areas, and an area has many visitors: each is asked once.
+        areas.sort_unstable();
+        areas.dedup();
+        let here = |v: &&Visit| v.enters <= frame && frame < v.leaves;
+        for list in areas.iter().filter_map(|area| self.visits.get(area)) {
+            found.extend(list.iter().filter(here).map(|v| v.body));
+        }
+        found.extend(self.large.iter().filter(here).map(|v| v.body));
+        true
+    }
+
+    /// How many areas have a visitor at a frame for which `counts` holds; it is asked until it does.
+    pub(crate) fn count(&self, frame: Frame, counts: impl Fn(BodyId, &Area) -> bool) -> u32 {
+        let here = |v: &&Visit| v.enters <= frame && frame < v.leaves;
+        let areas = self.visits.iter();
+        areas.filter(|(area, list)| list.iter().filter(here).any(|v| counts(v.body, area))).count() as u32
+    }
+
+    /// Whether a bound covers an area, and not too many others to list.
+    pub(crate) fn covers(&self, bound: &Aabb, area: &Area) -> bool {
+        match self.cover(bound) {
+            Cover::Areas { min, max } => (0..3).all(|axis| (min[axis]..=max[axis]).contains(&area[axis])),
+            Cover::Large => false,
+        }
+    }
+
+    /// The areas that a bound covers; none when they are too many to list.
+    pub(crate) fn covered(&self, bound: &Aabb) -> impl Iterator<Item = Area> + use<> {
+        let corners = match self.cover(bound) {
+            Cover::Areas { min, max } => Some((min, max)),
+            Cover::Large => None,
+        };
+        corners.into_iter().flat_map(|(min, max)| areas_between(min, max))
+    }
+
+    /// Forgets, now and then, the visits that ended by `oldest`.
+    pub(crate) fn forget_before(&mut self, oldest: Frame) {
+        if oldest.since(self.forgotten_to) < FORGET_EVERY {
+            return;
+        }
+        self.forgotten_to = oldest;
+        self.visits.retain(|_, list| {
+            list.retain(|v| v.leaves > oldest);
+            !list.is_empty()
+        });
+        self.large.retain(|v| v.leaves > oldest);
+    }
+
+    fn cover(&self, bound: &Aabb) -> Cover {
+        // Rounding down and limiting keep the order, so bounds that overlap share an area.
+        let cell = |v: Vec3| {
+            let scaled = (v / self.edge_m).floor().clamp(Vec3::splat(-AREA_LIMIT), Vec3::splat(AREA_LIMIT));
+            [scaled.x as i32, scaled.y as i32, scaled.z as i32]
+        };
+        let (min, max) = (cell(bound.min), cell(bound.max));
+        let sizes = [0, 1, 2].map(|axis| i64::from(max[axis]) - i64::from(min[axis]) + 1);
+        // Each size is at most 2^25 + 1: their product can pass the range of i64 but not when the first two are in bounds.
+        if sizes[0] * sizes[1] > AREAS_MAX || sizes[0] * sizes[1] * sizes[2] > AREAS_MAX {
+            Cover::Large
+        } else {
+            Cover::Areas { min, max }
+        }
+    }
+
+    fn for_each_list(&mut self, cover: Cover, mut act: impl FnMut(&mut Vec<Visit>)) {
+        match cover {
+            Cover::Large => act(&mut self.large),
+            Cover::Areas { min, max } => {
+                for area in areas_between(min, max) {
+                    act(self.visits.entry(area).or_default());
+                }
+            }
+        }
+    }
+}
+
+fn areas_between(min: Area, max: Area) -> impl Iterator<Item = Area> {
+    (min[0]..=max[0])
+        .flat_map(move |x| (min[1]..=max[1]).flat_map(move |y| (min[2]..=max[2]).map(move |z| [x, y, z])))
+}
+
+/// One visit per body and area: it covers all frames of the ones that were told. More than true, never less.
+fn extend(list: &mut Vec<Visit>, body: BodyId, enters: Frame, leaves: Frame) {
+    match list.binary_search_by_key(&body, |v| v.body) {
+        Ok(index) => {
+            let visit = &mut list[index];
+            visit.enters = visit.enters.min(enters);
+            visit.leaves = visit.leaves.max(leaves);
+        }
+        Err(index) => list.insert(index, Visit { body, enters, leaves }),
+    }
+}
+
+fn close(list: &mut [Visit], body: BodyId, frame: Frame) {
+    if let Ok(index) = list.binary_search_by_key(&body, |v| v.body) {
+        list[index].leaves = frame;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ball(x: f32) -> Aabb {
+        Aabb::from_centre(Vec3::new(x, 0.5, 0.5), Vec3::splat(0.25))
+    }
+
+    fn near(areas: &Areas, frame: u64, x: f32) -> Vec<u32> {
+        let mut found = Vec::new();
+        assert!(areas.near(Frame(frame), &[ball(x)], &mut found));
+        let mut ids: Vec<u32> = found.into_iter().map(|b| b.0).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    }
+
+    #[test]
+    fn a_visitor_is_found_where_and_when_it_is_there() {
+        let mut areas = Areas::new(1.0);
+        areas.visit(BodyId(7), Frame(0), Some(&ball(0.5)), Until::FurtherNotice);
+        areas.visit(BodyId(7), Frame(10), Some(&ball(3.5)), Until::FurtherNotice);
+        assert_eq!(near(&areas, 0, 0.4), [7]);
+        assert_eq!(near(&areas, 9, 0.4), [7]);
+        assert_eq!(near(&areas, 10, 0.4), [0; 0]);
+        assert_eq!(near(&areas, 1000, 3.4), [7]);
+        // Told again of a frame before the last one: it is there, and still everywhere that it was.
+        areas.visit(BodyId(7), Frame(4), Some(&ball(-5.5)), Until::NextFrame);
+        assert_eq!(near(&areas, 4, -5.5), [7]);
+        assert_eq!(near(&areas, 5, -5.5), [0; 0]);
+        assert_eq!(near(&areas, 1000, 3.4), [7]);
+    }
+
+    #[test]
+    fn large_bounds_are_found_from_everywhere_and_ask_everybody() {
+        let mut areas = Areas::new(1.0);
+        let ground =
+            Aabb { min: Vec3::splat(f32::NEG_INFINITY), max: Vec3::new(f32::INFINITY, 0.0, f32::INFINITY) };
+        areas.visit(BodyId(0), Frame(0), Some(&ground), Until::FurtherNotice);
+        assert_eq!(near(&areas, 3, 1e30), [0]);
+        assert!(!areas.near(Frame(3), &[ball(0.0), ground], &mut Vec::new()));
+        areas.visit(BodyId(0), Frame(5), None, Until::FurtherNotice);
+        assert_eq!(near(&areas, 5, 1e30), [0; 0]);
+    }
+
+    #[test]
+    fn the_past_is_forgotten() {
+        let mut areas = Areas::new(1.0);
+        areas.visit(BodyId(1), Frame(0), Some(&ball(0.5)), Until::FurtherNotice);
+        areas.visit(BodyId(1), Frame(1), Some(&ball(9.5)), Until::FurtherNotice);
+        areas.forget_before(Frame(1000));
+        assert_eq!(areas.visits.len(), 1);
+        assert_eq!(near(&areas, 1000, 9.5), [1]);
+    }
+}

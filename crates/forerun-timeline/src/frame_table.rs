@@ -1,0 +1,235 @@
+//! Frame table: the states of all bodies at one frame, in blocks that frames share.
+//!
+//! Promise: a block that is the same as in the frame before, or as before an edit, is the same memory. So resting blocks cost
+//! nothing, copies of a timeline cost what differs, and finding what differs costs a look at the blocks that are not shared.
+
+use std::sync::Arc;
+
+use forerun_dynamics::{BodyId, BodyState};
+use forerun_geometry::{Quat, Vec3};
+
+/// Bodies of one block: neighbours by id.
+const BLOCK_BODIES: usize = 32;
+
+/// What stands where there is no body, so that equal blocks have equal bits.
+const ABSENT: BodyState = BodyState {
+    position: Vec3::ZERO,
+    rotation: Quat::IDENTITY,
+    velocity: Vec3::ZERO,
+    angular_velocity: Vec3::ZERO,
+    rest: 0,
+};
+
+#[derive(Clone, Debug)]
+struct Block {
+    /// Bit `i` is set where body `i` of the block exists.
+    present: u32,
+    states: [BodyState; BLOCK_BODIES],
+}
+
+impl Block {
+    const EMPTY: Block = Block { present: 0, states: [ABSENT; BLOCK_BODIES] };
+
+    fn get(&self, slot: usize) -> Option<&BodyState> {
+        (self.present >> slot & 1 == 1).then(|| &self.states[slot])
+    }
+
+    fn set(&mut self, slot: usize, state: Option<BodyState>) {
+        let bit = 1 << slot;
+        self.present = if state.is_some() { self.present | bit } else { self.present & !bit };
+        self.states[slot] = state.unwrap_or(ABSENT);
+    }
+
+    fn same_bits(&self, other: &Block) -> bool {
+        self.present == other.present && self.states.iter().zip(&other.states).all(|(a, b)| a.same_bits(b))
+    }
+}
+
+/// The states of all bodies at one frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FrameTable {
+    blocks: Vec<Arc<Block>>,
+    population: u32,
+}
+
+/// A state to be stored; `None` where the body is not there.
+pub(crate) type Entry = (BodyId, Option<BodyState>);
+
+impl FrameTable {
+    /// A table of the first states of bodies 0, 1, 2, ...
+    pub(crate) fn new(states: &[BodyState]) -> FrameTable {
+        let blocks = states.chunks(BLOCK_BODIES).map(|states| {
+            let mut block = Block::EMPTY;
+            for (slot, state) in states.iter().enumerate() {
+                block.set(slot, Some(*state));
+            }
+            Arc::new(block)
+        });
+        FrameTable { blocks: blocks.collect(), population: states.len() as u32 }
+    }
+
+    /// How many bodies there are.
+    pub(crate) fn population(&self) -> usize {
+        self.population as usize
+    }
+
+    /// The state of a body, if it is there.
+    pub(crate) fn get(&self, body: BodyId) -> Option<&BodyState> {
+        let (block, slot) = place(body);
+        self.blocks.get(block)?.get(slot)
+    }
+
+    /// All bodies and their states, in the order of their ids.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (BodyId, &BodyState)> {
+        self.blocks.iter().enumerate().flat_map(|(index, block)| {
+            (0..BLOCK_BODIES).filter_map(move |slot| Some((body_at(index, slot), block.get(slot)?)))
+        })
+    }
+
+    /// The bodies whose bits differ, or that are only in one of the tables, in the order of their ids.
+    pub(crate) fn differences(&self, other: &FrameTable) -> Vec<BodyId> {
+        let mut differing = Vec::new();
+        for index in 0..self.blocks.len().max(other.blocks.len()) {
+            let (mine, theirs) = (self.blocks.get(index), other.blocks.get(index));
+            if let (Some(mine), Some(theirs)) = (mine, theirs)
+                && Arc::ptr_eq(mine, theirs)
+            {
+                continue;
+            }
+            for slot in 0..BLOCK_BODIES {
+                let (a, b) = (mine.and_then(|m| m.get(slot)), theirs.and_then(|t| t.get(slot)));
+                if !same_entry(a, b) {
+                    differing.push(body_at(index, slot));
+                }
+            }
+        }
+        differing
+    }
+
+    /// This table with other entries (sorted by id), and the bodies for which that made a difference. Blocks that come out as in
+    /// `before`, the table of the frame before, are shared with it.
+    pub(crate) fn with_entries(
+        self: &Arc<FrameTable>,
+        entries: &[Entry],
+        before: &Arc<FrameTable>,
+    ) -> (Arc<FrameTable>, Vec<BodyId>) {
+        let differs = |(body, state): &&Entry| !same_entry(self.get(*body), state.as_ref());
+        let changes: Vec<&Entry> = entries.iter().filter(differs).collect();
+        let changed: Vec<BodyId> = changes.iter().map(|(body, _)| *body).collect();
+        if changed.is_empty() {
+            return (Arc::clone(self), changed);
+        }
+        let mut table = FrameTable::clone(self);
+        let mut written = Vec::new();
+        for (body, state) in changes {
+            let (index, slot) = place(*body);
+            while table.blocks.len() <= index {
+                table.blocks.push(Arc::new(Block::EMPTY));
+            }
+            let block = Arc::make_mut(&mut table.blocks[index]);
+            table.population += u32::from(state.is_some());
+            table.population -= u32::from(block.get(slot).is_some());
+            block.set(slot, *state);
+            if written.last() != Some(&index) {
+                written.push(index);
+            }
+        }
+        for index in written {
+            if let Some(old) = before.blocks.get(index).filter(|old| old.same_bits(&table.blocks[index])) {
+                table.blocks[index] = Arc::clone(old);
+            }
+        }
+        if table.shares_all(before) {
+            return (Arc::clone(before), changed);
+        }
+        (Arc::new(table), changed)
+    }
+
+    /// Memory that `before` does not share. Bytes.
+    pub(crate) fn bytes_beyond(self: &Arc<FrameTable>, before: Option<&Arc<FrameTable>>) -> usize {
+        if before.is_some_and(|before| Arc::ptr_eq(self, before)) {
+            return 0;
+        }
+        let shared = |index: usize, block: &Arc<Block>| {
+            before.and_then(|before| before.blocks.get(index)).is_some_and(|old| Arc::ptr_eq(old, block))
+        };
+        let own = self.blocks.iter().enumerate().filter(|(index, block)| !shared(*index, block)).count();
+        own * size_of::<Block>() + self.blocks.len() * size_of::<Arc<Block>>() + size_of::<FrameTable>()
+    }
+
+    fn shares_all(&self, other: &FrameTable) -> bool {
+        self.blocks.len() == other.blocks.len()
+            && self.blocks.iter().zip(&other.blocks).all(|(a, b)| Arc::ptr_eq(a, b))
+    }
+}
+
+fn place(body: BodyId) -> (usize, usize) {
+    (body.0 as usize / BLOCK_BODIES, body.0 as usize % BLOCK_BODIES)
+}
+
+fn body_at(block: usize, slot: usize) -> BodyId {
+    BodyId((block * BLOCK_BODIES + slot) as u32)
+}
+
+/// Whether two entries are the same, bit for bit.
+pub(crate) fn same_entry(a: Option<&BodyState>, b: Option<&BodyState>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => a.same_bits(b),
+        (None, None) => true,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(x: f32) -> BodyState {
+        BodyState { position: Vec3::new(x, 0.0, 0.0), ..ABSENT }
+    }
+
+    fn table(count: usize) -> Arc<FrameTable> {
+        let states: Vec<BodyState> = (0..count).map(|i| state(i as f32)).collect();
+        Arc::new(FrameTable::new(&states))
+    }
+
+    #[test]
+    fn entries_are_written_and_found() {
+        let old = table(100);
+        let entries = [(BodyId(3), Some(state(-1.0))), (BodyId(40), None), (BodyId(200), Some(state(7.0)))];
+        let (new, changed) = old.with_entries(&entries, &old);
+        assert_eq!(changed, [BodyId(3), BodyId(40), BodyId(200)]);
+        assert_eq!(new.get(BodyId(3)), Some(&state(-1.0)));
+        assert_eq!(new.get(BodyId(40)), None);
+        assert_eq!(new.get(BodyId(200)), Some(&state(7.0)));
+        assert_eq!(new.get(BodyId(201)), None);
+        assert_eq!(new.population(), 100);
+        assert_eq!(new.iter().count(), 100);
+        assert_eq!(new.differences(&old), changed);
+        assert_eq!(old.differences(&new), changed);
+    }
+
+    #[test]
+    fn equal_entries_share_everything() {
+        let old = table(100);
+        let (new, changed) = old.with_entries(&[(BodyId(50), Some(state(50.0)))], &old);
+        assert!(changed.is_empty() && Arc::ptr_eq(&old, &new));
+    }
+
+    #[test]
+    fn untouched_blocks_are_shared() {
+        let old = table(100);
+        let (new, _) = old.with_entries(&[(BodyId(50), Some(state(0.5)))], &old);
+        let shared = old.blocks.iter().zip(&new.blocks).filter(|(a, b)| Arc::ptr_eq(a, b)).count();
+        assert_eq!(shared, 3);
+    }
+
+    #[test]
+    fn a_block_that_comes_out_as_the_frame_before_is_shared_with_it() {
+        let before = table(100);
+        let (stored, _) = before.with_entries(&[(BodyId(50), Some(state(0.5)))], &before);
+        let (new, changed) = stored.with_entries(&[(BodyId(50), Some(state(50.0)))], &before);
+        assert_eq!(changed, [BodyId(50)]);
+        assert!(Arc::ptr_eq(&new, &before));
+    }
+}

@@ -1,0 +1,227 @@
+//! Snapshot: an immutable picture of the timeline that a display keeps and samples without locks.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use forerun_dynamics::{Body, BodyId, BodyState};
+use forerun_geometry::{Pose, Vec3};
+
+use crate::definitions::Definitions;
+use crate::frame_table::FrameTable;
+use crate::{Frame, Timeline, sample};
+
+/// A body that physics is late with goes on for so many frames before it is held.
+const EXTRAPOLATED_FRAMES: f32 = 3.0;
+
+/// Times closer to a frame than this (relative, in frames) are that frame.
+const SAME_FRAME: f64 = 1e-9;
+
+/// How sure a sampled state is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Certainty {
+    /// From states that are known to be true for all commands accepted before the snapshot.
+    Exact,
+    /// Physics has not yet recomputed the body so far: it goes on at its last velocity for a few frames.
+    Extrapolated,
+    /// Physics is late: the last state that is known, held.
+    Held,
+}
+
+/// A body at some time, not only at a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Where the body's own frame is.
+    pub pose: Pose,
+    /// Velocity of the centre of mass. m/s.
+    pub velocity: Vec3,
+    /// Angular velocity in the world. rad/s.
+    pub angular_velocity: Vec3,
+    /// How sure this is.
+    pub certainty: Certainty,
+}
+
+/// States of all bodies from [`oldest`](Snapshot::oldest) to [`horizon`](Snapshot::horizon), as they were known when it was made.
+/// Making one costs a reference count per frame; it never changes and has no locks.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    oldest: Frame,
+    valid_to: Frame,
+    /// The states at `oldest` and the frames after it; never empty.
+    tables: Vec<Arc<FrameTable>>,
+    definitions: Arc<Definitions>,
+    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body.
+    doubtful: Vec<(BodyId, Frame)>,
+}
+
+impl Timeline {
+    /// An immutable picture of the whole, for the display. Cheap.
+    #[must_use]
+    pub fn snapshot(&self) -> Arc<Snapshot> {
+        Arc::new(Snapshot {
+            oldest: self.oldest(),
+            valid_to: self.valid_to(),
+            tables: self.tables.iter().cloned().collect(),
+            definitions: Arc::clone(&self.definitions),
+            doubtful: self.doubtful(),
+        })
+    }
+
+    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body. There may be
+    /// more: whom these will reach is not known yet.
+    pub(crate) fn doubtful(&self) -> Vec<(BodyId, Frame)> {
+        let mut doubtful = BTreeMap::new();
+        for (frame, stale) in &self.stale {
+            for body in self.out_of_date(*frame, stale) {
+                doubtful.entry(body).or_insert(*frame);
+            }
+        }
+        doubtful.into_iter().collect()
+    }
+}
+
+impl Snapshot {
+    /// The oldest frame kept.
+    #[must_use]
+    pub fn oldest(&self) -> Frame {
+        self.oldest
+    }
+
+    /// The last frame computed.
+    #[must_use]
+    pub fn horizon(&self) -> Frame {
+        self.oldest.plus(self.tables.len() as u64 - 1)
+    }
+
+    /// The last frame that is known to be true for all bodies.
+    #[must_use]
+    pub fn valid_to(&self) -> Frame {
+        self.valid_to
+    }
+
+    /// Length of a frame. Seconds.
+    #[must_use]
+    pub fn frame_seconds(&self) -> f32 {
+        self.definitions.environment(self.oldest).settings.frame_seconds
+    }
+
+    /// The stored state of a body; `None` when there is none at that frame.
+    #[must_use]
+    pub fn state(&self, body: BodyId, frame: Frame) -> Option<&BodyState> {
+        let index = frame.0.checked_sub(self.oldest.0)?;
+        self.tables.get(index as usize)?.get(body)
+    }
+
+    /// The body as it is from this frame to the next; `None` when it does not exist then.
+    #[must_use]
+    pub fn body_at(&self, body: BodyId, frame: Frame) -> Option<&Arc<Body>> {
+        self.definitions.body(body, frame)
+    }
+
+    /// The bodies that are stored at a frame, in the order of their ids; none when the frame is not stored.
+    pub fn bodies_at(&self, frame: Frame) -> impl Iterator<Item = BodyId> {
+        let table = frame.0.checked_sub(self.oldest.0).and_then(|index| self.tables.get(index as usize));
+        table.into_iter().flat_map(|table| table.iter().map(|(body, _)| body))
+    }
+
+    /// The body at a time (seconds since frame 0): exactly the stored state at a frame, between two of them interpolated, past the
+    /// last one that is known held. `None` where the body does not exist.
+    #[must_use]
+    pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
+        self.sample_at(body, self.moment(seconds))
+    }
+
+    /// All bodies at a time, in the order of their ids. `samples` is emptied first and keeps its memory.
+    pub fn sample_all(&self, seconds: f64, samples: &mut Vec<(BodyId, Sample)>) {
+        samples.clear();
+        let moment = self.moment(seconds);
+        let frame = moment.frame.min(self.horizon());
+        // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
+        let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
+        if !self.doubtful.is_empty() {
+            bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
+            bodies.sort_unstable();
+            bodies.dedup();
+        }
+        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
+    }
+
+    /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
+    #[must_use]
+    pub fn queue_min(&self, seconds: f64) -> u64 {
+        let shortest = self.doubtful.iter().map(|(_, frame)| *frame).min();
+        shortest.unwrap_or_else(|| self.horizon()).since(self.moment(seconds).frame)
+    }
+
+    /// The most states that a body has stored ahead of a display time (seconds) and that are known to be true.
+    #[must_use]
+    pub fn queue_max(&self, seconds: f64) -> u64 {
+        // Bodies that wait to be recomputed have fewer; when all of them wait, the longest counts.
+        let last = self.horizon();
+        let waiting = self.bodies_at(last).all(|body| self.known_to(body) < last);
+        let longest = self.doubtful.iter().map(|(_, frame)| *frame).max().filter(|_| waiting);
+        longest.unwrap_or(last).since(self.moment(seconds).frame)
+    }
+
+    fn moment(&self, seconds: f64) -> Moment {
+        let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest.0 as f64);
+        // A time that was computed from a frame means that frame (dissertation, algorithm 1: epsilon).
+        let nearest = frames.round();
+        if (frames - nearest).abs() <= SAME_FRAME * nearest.max(1.0) {
+            return Moment { frame: Frame(nearest as u64), part: 0.0 };
+        }
+        let frame = frames.floor();
+        Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
+    }
+
+    /// The last frame at which a body is known to be true.
+    fn known_to(&self, body: BodyId) -> Frame {
+        let found = self.doubtful.binary_search_by_key(&body, |(id, _)| *id);
+        found.map_or_else(|_| self.horizon(), |index| self.doubtful[index].1)
+    }
+
+    fn sample_at(&self, id: BodyId, moment: Moment) -> Option<Sample> {
+        let known_to = self.known_to(id);
+        let Moment { frame, part } = moment;
+        if frame > known_to || (frame == known_to && part > 0.0) {
+            return self.sample_late(id, moment, known_to);
+        }
+        let body = self.definitions.body(id, frame)?;
+        let state = self.state(id, frame)?;
+        let shown = match self.state(id, frame.next()) {
+            Some(next) if part > 0.0 => {
+                sample::between((state, next), part, body, &self.definitions.environment(frame))
+            }
+            _ => *state,
+        };
+        Some(sample_of(body, &shown, Certainty::Exact))
+    }
+
+    /// A body after the last frame at which it is known.
+    fn sample_late(&self, id: BodyId, moment: Moment, known_to: Frame) -> Option<Sample> {
+        let body = self.definitions.body(id, known_to)?;
+        let state = self.state(id, known_to)?;
+        if known_to == self.horizon() {
+            return Some(sample_of(body, state, Certainty::Held));
+        }
+        let late = moment.frame.since(known_to) as f32 + moment.part;
+        let shown = sample::beyond(state, late.min(EXTRAPOLATED_FRAMES), self.frame_seconds());
+        let certainty = if late <= EXTRAPOLATED_FRAMES { Certainty::Extrapolated } else { Certainty::Held };
+        Some(sample_of(body, &shown, certainty))
+    }
+}
+
+/// A time, as a frame and a part of the next (0 to 1).
+#[derive(Clone, Copy, Debug)]
+struct Moment {
+    frame: Frame,
+    part: f32,
+}
+
+fn sample_of(body: &Body, state: &BodyState, certainty: Certainty) -> Sample {
+    Sample {
+        pose: body.own_pose(state),
+        velocity: state.velocity,
+        angular_velocity: state.angular_velocity,
+        certainty,
+    }
+}

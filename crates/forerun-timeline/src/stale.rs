@@ -1,0 +1,75 @@
+//! Stale: what of the step from a frame to the next is out of date, and what it was computed from.
+//!
+//! *Invariant.* Let `S(k)` be the table stored at frame `k`, and for each frame `k` below the horizon let `O(k)` be its *old inputs*:
+//! `S(k)`, the bodies and gravity at `k`, except where `Stale` of `k` says otherwise (`basis` in place of `S(k)`, `bodies` in place
+//! of those bodies). Then every entry of `S(k+1)`, but for the bodies in `touched` (or all of them when `everyone` is set), is what a
+//! full step from `O(k)` followed by the commands of `k+1` gives.
+//!
+//! Where there is no `Stale`, `O(k)` is what is stored, so if there is none before frame `n`, all frames up to `n` equal a full
+//! simulation (by induction from the oldest frame): that is [`Timeline::valid_to`](crate::Timeline::valid_to).
+//!
+//! The invariant holds per frame and says nothing about how `S(k)` came to differ from `O(k)`. So commands may arrive at any moment,
+//! also before an older batch is worked off:
+//! - a command changes what is at frame `k`, or the commands of `k+1`: it is noted in `Stale` of `k`, where the first note wins, as
+//!   what is noted is what `S(k+1)` was computed from;
+//! - computing `k -> k+1` replaces entries of `S(k+1)` until it is what `S(k)` gives, and drops `Stale` of `k`. The table that was
+//!   there before becomes the basis of `k+1`, unless that has an older one, which is what `S(k+2)` was computed from.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use forerun_dynamics::{Body, BodyId};
+
+use crate::frame_table::FrameTable;
+
+/// What of the step from frame `k` to `k+1` is out of date. Empty when nothing is.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stale {
+    /// The states at `k` that `S(k+1)` was computed from, where not those stored.
+    pub(crate) basis: Option<Arc<FrameTable>>,
+    /// The bodies that `S(k+1)` was computed from, where they may have changed since.
+    pub(crate) bodies: BTreeMap<BodyId, Option<Arc<Body>>>,
+    /// Bodies whose entry in `S(k+1)` is wrong whatever it was computed from: their commands at `k+1` changed.
+    pub(crate) touched: BTreeSet<BodyId>,
+    /// All entries of `S(k+1)` may be wrong.
+    pub(crate) everyone: bool,
+}
+
+impl Stale {
+    /// The table that the next frame was computed from; `stored` is the one stored at this frame.
+    pub(crate) fn old_table<'a>(&'a self, stored: &'a Arc<FrameTable>) -> &'a Arc<FrameTable> {
+        self.basis.as_ref().unwrap_or(stored)
+    }
+
+    /// The bodies that have to be advanced because they, or the commands to them, are not what the next frame was computed from.
+    /// Sorted. `body_now` says what a body is at this frame now.
+    pub(crate) fn out_of_date<'a>(
+        &self,
+        stored: &Arc<FrameTable>,
+        body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
+    ) -> Vec<BodyId> {
+        let mut bodies = self.basis.as_ref().map_or_else(Vec::new, |old| stored.differences(old));
+        if self.everyone {
+            bodies.extend(stored.iter().map(|(body, _)| body));
+        }
+        bodies.extend(
+            self.bodies
+                .iter()
+                .filter(|(body, old)| !same_body(body_now(**body), old.as_ref()))
+                .map(|(b, _)| *b),
+        );
+        bodies.extend(&self.touched);
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies
+    }
+}
+
+/// Whether the two are the same body; cheap where they share memory.
+pub(crate) fn same_body(a: Option<&Arc<Body>>, b: Option<&Arc<Body>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a == b,
+        (None, None) => true,
+        _ => false,
+    }
+}

@@ -1,0 +1,330 @@
+//! The timeline: all states, the commands, and what is known to be true up to where.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use forerun_dynamics::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, bounds};
+
+use crate::affected::{Mutation, Scratch};
+use crate::areas::{Areas, Until};
+use crate::command_log::CommandLog;
+use crate::commanding::FrameEffects;
+use crate::definitions::Definitions;
+use crate::frame_table::FrameTable;
+use crate::stale::Stale;
+use crate::{Change, CommandKey, Frame};
+
+/// Edge of an area where no body says how large things are. Metres.
+const AREA_EDGE_M: f32 = 2.0;
+
+/// How far a timeline looks ahead and back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimelineSettings {
+    /// How many frames are computed beyond the display's. 1 or more, default 100.
+    pub lookahead: u32,
+    /// How many frames before the display's are kept, for commands that come late and for scrubbing. Default 100.
+    pub past: u32,
+    /// Edge of an area (a cell of the grid that says who is near). Metres, above 0; `None` chooses one from the bodies.
+    pub area_m: Option<f32>,
+}
+
+impl Default for TimelineSettings {
+    fn default() -> Self {
+        TimelineSettings { lookahead: 100, past: 100, area_m: None }
+    }
+}
+
+/// What a call of [`advance`](Timeline::advance) did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// One frame was computed or recomputed.
+    Advanced(Advance),
+    /// Everything is true up to the display frame plus the lookahead: nothing to do until a command comes or the display moves on.
+    Idle,
+}
+
+/// One frame of work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Advance {
+    /// The frame whose states were computed.
+    pub frame: Frame,
+    /// Bodies that were advanced to it.
+    pub recomputed: u32,
+    /// Bodies whose state there is another one than before; of a new frame: that moved.
+    pub affected: u32,
+    /// Most slices that an island's frame was cut into.
+    pub slices_max: u32,
+    /// Whether the frame is a new one, beyond the old horizon.
+    pub extended: bool,
+}
+
+/// Sums of work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Body-frames whose stored bits were replaced by others.
+    pub affected: u64,
+    /// Body-frames that were advanced.
+    pub recomputed: u64,
+    /// Frames that were worked on.
+    pub frames: u64,
+    /// Bodies that were stopped because their next state was not finite, each time it happened.
+    pub quarantined: u64,
+}
+
+/// What a timeline has done so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Work on new frames.
+    pub ahead: Counters,
+    /// Re-simulation, all together.
+    pub edits: Counters,
+    /// Re-simulation for the last batch of commands: those that came before everything was true again.
+    pub last_edit: Counters,
+    /// Commands in force that did nothing: their body was not there, or the result would not have been finite.
+    pub ignored: u64,
+    /// Most slices that an island's frame was cut into.
+    pub slices_max: u32,
+}
+
+/// All states of all bodies over frames, kept equal, bit for bit, to a full simulation with the same commands.
+///
+/// A clone is a fork: it shares all states until they differ.
+#[derive(Clone, Debug)]
+pub struct Timeline {
+    pub(crate) settings: TimelineSettings,
+    display: Frame,
+    pub(crate) oldest: Frame,
+    /// The states at `oldest` and the frames after it; never empty.
+    pub(crate) tables: VecDeque<Arc<FrameTable>>,
+    pub(crate) definitions: Arc<Definitions>,
+    pub(crate) log: CommandLog,
+    /// By frame below the horizon: what of the step that leaves it is out of date.
+    pub(crate) stale: BTreeMap<Frame, Stale>,
+    /// By frame: what its commands did.
+    pub(crate) effects: BTreeMap<Frame, FrameEffects>,
+    pub(crate) areas: Areas,
+    pub(crate) scratch: Scratch,
+    /// Of the local user's next command.
+    pub(crate) next_sequence: u64,
+    pub(crate) stats: Stats,
+    pub(crate) mutation: Mutation,
+    pub(crate) recompute_all: bool,
+}
+
+impl Timeline {
+    /// A timeline of the bodies, named 0, 1, 2, ... in their order, at frame 0.
+    ///
+    /// # Errors
+    /// When a body is not possible; the index and what is wrong with it.
+    pub fn new(
+        bodies: &[BodyDef],
+        environment: Environment,
+        settings: TimelineSettings,
+    ) -> Result<Timeline, TimelineError> {
+        let mut made = Vec::with_capacity(bodies.len());
+        let mut states = Vec::with_capacity(bodies.len());
+        for (index, def) in bodies.iter().enumerate() {
+            let (body, state) = Body::new(def).map_err(|error| TimelineError { index, error })?;
+            made.push((Arc::new(def.clone()), Arc::new(body)));
+            states.push(state);
+        }
+        let edge_m = settings.area_m.filter(|edge| *edge > 0.0 && edge.is_finite());
+        let mut areas = Areas::new(edge_m.unwrap_or_else(|| area_edge(made.iter().map(|(_, body)| &**body))));
+        for (index, ((_, body), state)) in made.iter().zip(&states).enumerate() {
+            let bound = bounds::swept_bound(body, state, &environment);
+            areas.visit(BodyId(index as u32), Frame(0), Some(&bound), Until::FurtherNotice);
+        }
+        Ok(Timeline {
+            settings: TimelineSettings { lookahead: settings.lookahead.max(1), ..settings },
+            display: Frame(0),
+            oldest: Frame(0),
+            tables: VecDeque::from([Arc::new(FrameTable::new(&states))]),
+            definitions: Arc::new(Definitions::new(made, environment)),
+            log: CommandLog::default(),
+            stale: BTreeMap::new(),
+            effects: BTreeMap::new(),
+            areas,
+            scratch: Scratch::default(),
+            next_sequence: 0,
+            stats: Stats::default(),
+            mutation: Mutation::None,
+            recompute_all: false,
+        })
+    }
+
+    /// A name for a body to be added, different from all others.
+    pub fn reserve_body(&mut self) -> BodyId {
+        let names = self.definitions.names();
+        Arc::make_mut(&mut self.definitions).reserve(names + 1);
+        BodyId(names as u32)
+    }
+
+    /// Tells where the display is. Frames older than `past` before it are forgotten, unless the physics still needs them.
+    pub fn set_display(&mut self, frame: Frame) {
+        self.display = frame;
+        let wanted = frame.minus(u64::from(self.settings.past));
+        let oldest = wanted.min(self.valid_to().minus(1)).max(self.oldest);
+        let dropped = oldest.since(self.oldest) as usize;
+        if dropped == 0 {
+            return;
+        }
+        self.tables.drain(..dropped);
+        self.oldest = oldest;
+        let commanded = self.log.forget_to(oldest);
+        Arc::make_mut(&mut self.definitions).forget_before(oldest, commanded.into_iter());
+        let kept = self.effects.split_off(&oldest.next());
+        let forgotten = std::mem::replace(&mut self.effects, kept);
+        self.stats.ignored += ignored(&forgotten);
+        self.areas.forget_before(oldest);
+    }
+
+    /// Where the display is.
+    #[must_use]
+    pub fn display(&self) -> Frame {
+        self.display
+    }
+
+    /// Changes how many frames are computed beyond the display's (1 or more). What is already computed stays.
+    pub fn set_lookahead(&mut self, frames: u32) {
+        self.settings.lookahead = frames.max(1);
+    }
+
+    /// How far the timeline looks ahead and back.
+    #[must_use]
+    pub fn settings(&self) -> TimelineSettings {
+        self.settings
+    }
+
+    /// The oldest frame kept. Commands act after it.
+    #[must_use]
+    pub fn oldest(&self) -> Frame {
+        self.oldest
+    }
+
+    /// The last frame computed.
+    #[must_use]
+    pub fn horizon(&self) -> Frame {
+        self.oldest.plus(self.tables.len() as u64 - 1)
+    }
+
+    /// The last frame that is known to be true for all bodies.
+    #[must_use]
+    pub fn valid_to(&self) -> Frame {
+        self.stale.first_key_value().map_or(self.horizon(), |(frame, _)| *frame)
+    }
+
+    /// The stored state of a body, after the commands of the frame; `None` when there is none.
+    #[must_use]
+    pub fn state(&self, body: BodyId, frame: Frame) -> Option<&BodyState> {
+        let index = frame.0.checked_sub(self.oldest.0)?;
+        self.tables.get(index as usize)?.get(body)
+    }
+
+    /// The body as it is from this frame to the next; `None` when it does not exist then.
+    #[must_use]
+    pub fn body_at(&self, body: BodyId, frame: Frame) -> Option<&Arc<Body>> {
+        self.definitions.body(body, frame)
+    }
+
+    /// Gravity and settings as they are from this frame to the next.
+    #[must_use]
+    pub fn environment_at(&self, frame: Frame) -> Environment {
+        self.definitions.environment(frame)
+    }
+
+    /// The bodies that are stored at a frame, in the order of their ids; none when the frame is not stored.
+    #[must_use]
+    pub fn bodies_at(&self, frame: Frame) -> Vec<BodyId> {
+        let table = frame.0.checked_sub(self.oldest.0).and_then(|index| self.tables.get(index as usize));
+        table.into_iter().flat_map(|table| table.iter().map(|(body, _)| body)).collect()
+    }
+
+    /// How many names of bodies are in use; ids are below it.
+    #[must_use]
+    pub fn names(&self) -> usize {
+        self.definitions.names()
+    }
+
+    /// The accepted commands that act after the oldest frame, in the order in which they act.
+    pub fn commands(&self) -> impl Iterator<Item = (&CommandKey, &Change)> {
+        self.log.iter()
+    }
+
+    /// What has been done so far.
+    #[must_use]
+    pub fn stats(&self) -> Stats {
+        Stats { ignored: self.stats.ignored + ignored(&self.effects), ..self.stats }
+    }
+
+    /// Memory of all stored states. Bytes.
+    #[must_use]
+    pub fn state_bytes(&self) -> usize {
+        let before = std::iter::once(None).chain(self.tables.iter().map(Some));
+        self.tables.iter().zip(before).map(|(table, before)| table.bytes_beyond(before)).sum()
+    }
+
+    pub(crate) fn table(&self, frame: Frame) -> &Arc<FrameTable> {
+        &self.tables[frame.since(self.oldest) as usize]
+    }
+
+    pub(crate) fn set_table(&mut self, frame: Frame, table: Arc<FrameTable>) {
+        self.tables[frame.since(self.oldest) as usize] = table;
+    }
+
+    pub(crate) fn count(&mut self, done: &Advance, quarantined: u32) {
+        let add = |counters: &mut Counters| {
+            counters.affected += u64::from(done.affected);
+            counters.recomputed += u64::from(done.recomputed);
+            counters.frames += 1;
+            counters.quarantined += u64::from(quarantined);
+        };
+        if done.extended {
+            add(&mut self.stats.ahead);
+        } else {
+            add(&mut self.stats.edits);
+            add(&mut self.stats.last_edit);
+        }
+        self.stats.slices_max = self.stats.slices_max.max(done.slices_max);
+    }
+
+    /// Leaves out a rule, to show that tests notice.
+    #[doc(hidden)]
+    pub fn mutate(&mut self, mutation: Mutation) {
+        self.mutation = mutation;
+    }
+
+    /// From now on computes all bodies in every frame and trusts nothing stored: the reference that the rest is compared with.
+    #[doc(hidden)]
+    pub fn recompute_all(&mut self) {
+        self.recompute_all = true;
+    }
+}
+
+fn ignored(effects: &BTreeMap<Frame, FrameEffects>) -> u64 {
+    effects.values().flat_map(BTreeMap::values).map(|effect| u64::from(effect.ignored)).sum()
+}
+
+/// An edge of areas that suits the bodies: four times the radius of the middle one of those that move. Metres.
+fn area_edge<'a>(bodies: impl Iterator<Item = &'a Body>) -> f32 {
+    let mut radii: Vec<f32> =
+        bodies.filter(|b| b.is_dynamic() && b.radius.is_finite()).map(|b| b.radius).collect();
+    radii.sort_unstable_by(f32::total_cmp);
+    radii.get(radii.len() / 2).map_or(AREA_EDGE_M, |radius| (4.0 * radius).clamp(1e-3, 1e6))
+}
+
+/// Which body of a new timeline is not possible, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimelineError {
+    /// Index of the body in the given list.
+    pub index: usize,
+    /// What is wrong with it.
+    pub error: BodyError,
+}
+
+impl std::fmt::Display for TimelineError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "body {}: {}", self.index, self.error)
+    }
+}
+
+impl std::error::Error for TimelineError {}

@@ -1,0 +1,140 @@
+//! Coupled: the traditional model, step then show, for comparison (dissertation, section 3.1).
+//!
+//! Each cycle computes one frame and shows it. The time step of a cycle is what the cycle before took in real time,
+//! Δt(n) = T_C(n-1) + T_E(n-1), so a slow step makes the next one long, and imprecise; hence the limits.
+
+use std::time::Duration;
+
+use forerun_timeline::Change;
+
+use super::direct_change::{ChangeError, apply};
+use crate::dynamics::{StepReport, Unobserved, World};
+use crate::{Clock, Threads};
+
+/// Between which lengths a time step is kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepLimits {
+    /// Shortest step. Seconds, above 0.
+    pub min_s: f64,
+    /// Longest step. Seconds, at least `min_s`. A cycle that takes longer leaves the animation behind real time for good.
+    pub max_s: f64,
+}
+
+impl Default for StepLimits {
+    /// 1 ms to 42 ms: the dissertation wants 24 pictures per second, and no step that shows less than that.
+    fn default() -> Self {
+        StepLimits { min_s: 0.001, max_s: 0.042 }
+    }
+}
+
+/// The traditional driver. It has no queue: the physics time is the display time, and whoever shows a picture waits for it.
+#[derive(Debug)]
+pub struct Coupled {
+    world: World,
+    clock: Clock,
+    threads: Threads,
+    limits: StepLimits,
+    slow_down: Duration,
+    cycle_start: Option<Duration>,
+    time_s: f64,
+}
+
+impl Coupled {
+    /// A driver for `world`, whose present states are those of time 0.
+    #[must_use]
+    pub fn new(world: World, clock: Clock, threads: Threads, limits: StepLimits) -> Self {
+        Coupled { world, clock, threads, limits, slow_down: Duration::ZERO, cycle_start: None, time_s: 0.0 }
+    }
+
+    /// Makes every step this much slower, to see what a slow scene does.
+    #[must_use]
+    pub fn with_slow_down(mut self, per_frame: Duration) -> Self {
+        self.slow_down = per_frame;
+        self
+    }
+
+    /// One cycle: steps by the time that has passed since the last call began. The states to show are then in [`Coupled::world`].
+    ///
+    /// The first call steps nothing: it shows the initial states.
+    pub fn show(&mut self) -> StepReport {
+        let now = self.clock.now();
+        let Some(before) = self.cycle_start.replace(now) else {
+            return StepReport { slices_max: 1, ..StepReport::default() };
+        };
+        let step_s = (now.saturating_sub(before)).as_secs_f64().clamp(self.limits.min_s, self.limits.max_s);
+        self.world.environment.settings.frame_seconds = step_s as f32;
+        let world = &mut self.world;
+        let report = self.threads.install(|| world.step(&mut Unobserved));
+        if !self.slow_down.is_zero() {
+            self.clock.wait_until(self.clock.now() + self.slow_down);
+        }
+        self.time_s += step_s;
+        report
+    }
+
+    /// How much time the physics has computed, which is also what is shown. Seconds.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Length of the last step. Seconds.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        f64::from(self.world.environment.settings.frame_seconds)
+    }
+
+    /// The bodies and their states.
+    #[must_use]
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// A change by the user, in force from the next cycle on. A body to be added takes the next free name.
+    ///
+    /// # Errors
+    /// When there is no such body, or a plain world cannot do it; then nothing changed.
+    pub fn change(&mut self, change: &Change) -> Result<(), ChangeError> {
+        apply(&mut self.world, change)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BodyDef, Environment, Shape, Sphere, Vec3};
+
+    fn coupled(clock: &Clock) -> Coupled {
+        let mut world = World::new(Environment::default());
+        let ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::Y * 100.0);
+        world.add(&ball).expect("a plain ball");
+        Coupled::new(world, clock.clone(), Threads::all().expect("threads"), StepLimits::default())
+    }
+
+    #[test]
+    fn a_step_is_as_long_as_the_cycle_before() {
+        let clock = Clock::by_hand();
+        let mut driver = coupled(&clock);
+        driver.show();
+        for (cycle_ms, step_ms) in [(20, 20.0), (35, 35.0), (500, 42.0), (0, 1.0)] {
+            clock.turn(Duration::from_millis(cycle_ms));
+            let before = driver.time_s();
+            driver.show();
+            assert!((1000.0 * (driver.time_s() - before) - step_ms).abs() < 1e-9, "cycle of {cycle_ms} ms");
+        }
+    }
+
+    #[test]
+    fn a_cycle_beyond_the_longest_step_is_never_made_up_for() {
+        let clock = Clock::by_hand();
+        let mut driver = coupled(&clock);
+        driver.show();
+        clock.turn(Duration::from_secs(1));
+        driver.show();
+        for _ in 0..100 {
+            clock.turn(Duration::from_millis(33));
+            driver.show();
+        }
+        assert!((clock.now().as_secs_f64() - driver.time_s() - 0.958).abs() < 1e-9);
+    }
+}

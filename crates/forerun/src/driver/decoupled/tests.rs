@@ -1,0 +1,172 @@
+//! What the display may rely on, whatever the physics thread does.
+
+use std::sync::Weak;
+
+use super::*;
+use crate::{Clock, Cuboid, Environment, Pose, Shape, Sphere, TimelineSettings, Vec3};
+
+const LOOKAHEAD: u32 = 20;
+const FRAME_S: f64 = 1.0 / 60.0;
+
+/// A ball above the ground and another far away.
+fn timeline() -> Timeline {
+    let ball = Shape::Sphere(Sphere { radius: 0.5 });
+    let bodies = [
+        BodyDef::fixed(Shape::Cuboid(Cuboid { half_extents: Vec3::new(50.0, 1.0, 50.0) })).at(Vec3::NEG_Y),
+        BodyDef::new(ball.clone()).at(Vec3::Y * 5.0),
+        BodyDef::new(ball).at(Vec3::new(30.0, 5.0, 0.0)),
+    ];
+    let settings = TimelineSettings { lookahead: LOOKAHEAD, ..TimelineSettings::default() };
+    Timeline::new(&bodies, Environment::default(), settings).expect("plain bodies")
+}
+
+fn settings() -> DecoupledSettings {
+    DecoupledSettings::new(Threads::exactly(std::num::NonZeroU16::MIN).expect("one thread"))
+}
+
+fn slow(millis: u64) -> Decoupled {
+    let slow_down = Duration::from_millis(millis);
+    Decoupled::start(timeline(), DecoupledSettings { slow_down, ..settings() }).expect("a thread")
+}
+
+/// Asks until the answer is yes, for ten seconds at most.
+fn eventually(mut ask: impl FnMut() -> bool) -> bool {
+    let clock = Clock::system();
+    while clock.now() < Duration::from_secs(10) {
+        if ask() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    false
+}
+
+fn full(driver: &Decoupled) -> bool {
+    let picture = driver.last_picture();
+    picture.snapshot.valid_to() == picture.frame.plus(u64::from(LOOKAHEAD))
+}
+
+#[test]
+fn the_display_never_waits_while_physics_sleeps_half_a_second_a_frame() {
+    let mut driver = slow(500);
+    let clock = Clock::system();
+    for picture in 0..200 {
+        driver.show(f64::from(picture) * 0.01).expect("physics lives");
+        driver.change(Change::Release { body: BodyId(1) }).expect("the queue has room");
+    }
+    assert!(clock.now() < Duration::from_millis(250), "200 pictures took {:?}", clock.now());
+}
+
+#[test]
+fn display_time_never_goes_back() {
+    let mut driver = slow(0);
+    let times: Vec<f64> =
+        [0.3, 0.1, 0.4].into_iter().map(|t| driver.show(t).expect("physics lives").time_s).collect();
+    assert_eq!(times, [0.3, 0.3, 0.4]);
+}
+
+#[test]
+fn physics_runs_ahead_as_far_as_it_may_and_then_sleeps() {
+    let mut driver = slow(0);
+    assert!(eventually(|| full(&driver)));
+    let work = driver.last_picture().stats;
+    std::thread::sleep(Duration::from_millis(20));
+    assert_eq!(driver.last_picture().snapshot.horizon(), Frame(u64::from(LOOKAHEAD)));
+    assert_eq!(driver.last_picture().stats, work);
+    driver.show(10.0 * FRAME_S).expect("physics lives");
+    assert!(eventually(|| full(&driver)), "the display moved on, and nobody woke the physics");
+    assert_eq!(driver.last_picture().snapshot.horizon(), Frame(10 + u64::from(LOOKAHEAD)));
+}
+
+#[test]
+fn a_local_change_acts_on_the_first_frame_after_the_displayed_one() {
+    let mut driver = slow(0);
+    assert!(eventually(|| full(&driver)));
+    let before = driver.show(10.5 * FRAME_S).expect("physics lives");
+    assert_eq!(before.frame, Frame(10));
+    let impulse = Vec3::X * 500.0;
+    let key = driver.change(Change::Push { body: BodyId(1), impulse, at_point: None }).expect("room");
+    assert_eq!(key.frame, Frame(11));
+    assert!(eventually(|| driver.last_picture().stats.edits.recomputed > 0 && full(&driver)));
+    let after = driver.last_picture();
+    let state =
+        |picture: &Picture, body, frame| *picture.snapshot.state(BodyId(body), Frame(frame)).expect("kept");
+    assert!(state(&after, 1, 10).same_bits(&state(&before, 1, 10)), "a state on the screen was taken back");
+    assert!(state(&after, 1, 11).velocity.x > 0.5);
+    assert!(state(&after, 2, 20).same_bits(&state(&before, 2, 20)), "a body out of reach was changed");
+}
+
+#[test]
+fn past_the_horizon_the_last_state_is_held_and_commands_are_taken() {
+    let mut driver = slow(50);
+    assert!(eventually(|| driver.last_picture().snapshot.horizon() >= Frame(2)));
+    let picture = driver.show(100.0).expect("physics lives");
+    let horizon = picture.snapshot.horizon();
+    let last = picture.snapshot.state(BodyId(1), horizon).expect("the newest state").position;
+    let held = picture.snapshot.sample(BodyId(1), picture.time_s).expect("the body is there").pose;
+    assert_eq!(held, Pose { position: last, ..held });
+    assert!(driver.change(Change::Release { body: BodyId(1) }).is_ok());
+}
+
+#[test]
+fn a_full_queue_pushes_back_at_once_and_takes_commands_again_later() {
+    let slow_down = Duration::from_millis(100);
+    let mut driver =
+        Decoupled::start(timeline(), DecoupledSettings { slow_down, command_capacity: 4, ..settings() })
+            .expect("a thread");
+    let mut change = || driver.change(Change::Release { body: BodyId(1) });
+    // One queue full may be heard in between, not more: physics sleeps.
+    let refused = (0..20).find_map(|_| change().err());
+    assert_eq!(refused, Some(DriverError::QueueFull));
+    assert!(eventually(|| change().is_ok()));
+}
+
+#[test]
+fn a_command_that_the_timeline_refuses_comes_back_with_the_reason() {
+    let mut driver = slow(0);
+    let key = driver.change(Change::Remove { body: BodyId(77) }).expect("the queue has room");
+    let mut refusals = Vec::new();
+    assert!(eventually(|| {
+        refusals.extend(driver.refusals());
+        !refusals.is_empty()
+    }));
+    assert_eq!(refusals, [(key, CommandError::UnknownBody(BodyId(77)))]);
+}
+
+#[test]
+fn added_bodies_get_their_names_without_asking_the_physics() {
+    let mut driver = slow(0);
+    let ball = || BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::new(-20.0, 3.0, 0.0));
+    let (first, second) = (driver.add(ball()).expect("room"), driver.add(ball()).expect("room"));
+    assert_eq!((first, second), (BodyId(3), BodyId(4)));
+    let last = Frame(u64::from(LOOKAHEAD));
+    assert!(eventually(|| driver.last_picture().snapshot.state(second, last).is_some()));
+    assert_eq!(driver.refusals(), []);
+}
+
+#[test]
+fn a_panic_of_the_physics_reaches_the_display_with_its_message() {
+    let mut frames = 0;
+    let hinder = move || {
+        frames += 1;
+        assert!(frames < 5, "the fifth frame is one too many");
+    };
+    let mut driver = Decoupled::start_hindered(timeline(), settings(), Box::new(hinder)).expect("a thread");
+    let mut failure = None;
+    assert!(eventually(|| {
+        failure = driver.show(0.0).err();
+        failure.is_some()
+    }));
+    let Some(DriverError::Panicked(message)) = failure else { panic!("{failure:?}") };
+    assert!(message.contains("the fifth frame is one too many"), "{message}");
+    assert_eq!(driver.last_picture().snapshot.horizon(), Frame(4));
+    assert!(matches!(driver.change(Change::Release { body: BodyId(1) }), Err(DriverError::Panicked(_))));
+}
+
+#[test]
+fn dropping_the_driver_ends_the_thread() {
+    let driver = slow(5);
+    let shared: Weak<Shared> = Arc::downgrade(&driver.shared);
+    drop(driver);
+    assert!(shared.upgrade().is_none(), "the thread still holds what it shares");
+}

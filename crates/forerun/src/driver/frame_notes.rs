@@ -1,0 +1,75 @@
+//! Frame notes: what the physics thread remarks about each frame, for who draws it.
+//!
+//! Promise: neither side ever waits. A note is one atomic word in a ring, tagged with its frame; a reader that comes too late
+//! or too early finds another frame's tag and gets nothing.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::Frame;
+
+/// How one frame was computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameNote {
+    /// Most slices that an island's frame was cut into; 1 when none was.
+    pub slices_max: u8,
+    /// Areas in which a body moved.
+    pub areas_active: u32,
+}
+
+const AREAS_BITS: u32 = 24;
+const SLICES_BITS: u32 = 8;
+
+/// The notes of the last frames.
+#[derive(Debug)]
+pub(crate) struct FrameNotes {
+    ring: Box<[AtomicU64]>,
+}
+
+impl FrameNotes {
+    /// Room for the notes of `frames` frames.
+    pub(crate) fn with_capacity(frames: usize) -> Self {
+        // Slices are never 0, so a word of zeros is the note of no frame.
+        FrameNotes { ring: (0..frames.max(1)).map(|_| AtomicU64::new(0)).collect() }
+    }
+
+    pub(crate) fn write(&self, frame: Frame, note: FrameNote) {
+        let areas = u64::from(note.areas_active.min((1 << AREAS_BITS) - 1));
+        let slices = u64::from(note.slices_max.max(1));
+        let word = tag(frame) << (AREAS_BITS + SLICES_BITS) | slices << AREAS_BITS | areas;
+        // The word says all there is to say, so it needs no order with other memory.
+        self.ring[self.place(frame)].store(word, Ordering::Relaxed);
+    }
+
+    pub(crate) fn read(&self, frame: Frame) -> Option<FrameNote> {
+        let word = self.ring[self.place(frame)].load(Ordering::Relaxed);
+        let slices_max = (word >> AREAS_BITS) as u8;
+        let written = slices_max != 0 && word >> (AREAS_BITS + SLICES_BITS) == tag(frame);
+        written.then_some(FrameNote { slices_max, areas_active: word as u32 & ((1 << AREAS_BITS) - 1) })
+    }
+
+    fn place(&self, frame: Frame) -> usize {
+        (frame.0 % self.ring.len() as u64) as usize
+    }
+}
+
+fn tag(frame: Frame) -> u64 {
+    frame.0 & u64::from(u32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_is_read_as_written_until_the_ring_comes_round() {
+        let notes = FrameNotes::with_capacity(4);
+        let note = FrameNote { slices_max: 8, areas_active: 77 };
+        assert_eq!(notes.read(Frame(0)), None);
+        notes.write(Frame(2), note);
+        assert_eq!(notes.read(Frame(2)), Some(note));
+        assert_eq!(notes.read(Frame(6)), None);
+        notes.write(Frame(6), FrameNote { slices_max: 0, areas_active: u32::MAX });
+        assert_eq!(notes.read(Frame(2)), None);
+        assert_eq!(notes.read(Frame(6)), Some(FrameNote { slices_max: 1, areas_active: (1 << 24) - 1 }));
+    }
+}

@@ -1,0 +1,186 @@
+//! Physics: the thread that owns the working timeline.
+//!
+//! The loop is a short story: hear commands, learn where the display is, compute the earliest frame that is out of date, publish; or
+//! sleep when there is nothing to do. It never spins: whoever gives it something to do wakes it, and a wake that comes before the
+//! sleep is not lost (`std::thread::park` keeps it).
+
+use std::any::Any;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread::{JoinHandle, Thread};
+
+use arc_swap::ArcSwap;
+use forerun_timeline::{
+    Change, Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline,
+};
+
+use super::frame_notes::{FrameNote, FrameNotes};
+use crate::{BodyId, Threads};
+
+/// Frames whose notes are kept: more than a sensible lookahead, in 128 KiB. With a longer one, far frames have no notes.
+const NOTES_KEPT: usize = 1 << 14;
+
+/// Done after every computed frame.
+pub(super) type Hinder = Box<dyn FnMut() + Send>;
+
+/// What the physics thread last made known, as one immutable whole.
+#[derive(Debug)]
+pub(super) struct Published {
+    pub(super) snapshot: Arc<Snapshot>,
+    pub(super) stats: Stats,
+}
+
+/// What both sides see.
+#[derive(Debug)]
+pub(super) struct Shared {
+    /// The root that the display takes.
+    pub(super) published: ArcSwap<Published>,
+    pub(super) notes: FrameNotes,
+    /// Message of a panic of the physics thread; locked only after it has ended.
+    pub(super) panic: Mutex<Option<String>>,
+    /// The first body name that is not given away.
+    pub(super) next_body: AtomicU32,
+    display: AtomicU64,
+    stopping: AtomicBool,
+    sleeper: OnceLock<Thread>,
+}
+
+impl Shared {
+    /// `next_body` is the last name that the timeline gave away, and nobody has used.
+    pub(super) fn new(timeline: &Timeline, next_body: BodyId) -> Self {
+        Shared {
+            published: ArcSwap::from_pointee(Published {
+                snapshot: timeline.snapshot(),
+                stats: timeline.stats(),
+            }),
+            notes: FrameNotes::with_capacity(NOTES_KEPT),
+            panic: Mutex::new(None),
+            next_body: AtomicU32::new(next_body.0),
+            display: AtomicU64::new(0),
+            stopping: AtomicBool::new(false),
+            sleeper: OnceLock::new(),
+        }
+    }
+
+    /// Tells the physics which frame the display has reached.
+    pub(super) fn tell_display(&self, frame: Frame) {
+        // Unparking orders these stores before what the woken thread reads; a busy one reads them a frame later, which is soon enough.
+        if self.display.swap(frame.0, Ordering::Relaxed) != frame.0 {
+            self.wake();
+        }
+    }
+
+    /// Asks the physics to end.
+    pub(super) fn stop(&self) {
+        self.stopping.store(true, Ordering::Relaxed);
+        self.wake();
+    }
+
+    /// Wakes the physics, or keeps it from its next sleep.
+    pub(super) fn wake(&self) {
+        // Set before the thread is handed out by `spawn`.
+        if let Some(thread) = self.sleeper.get() {
+            thread.unpark();
+        }
+    }
+}
+
+/// All that the physics thread owns.
+pub(super) struct Physics {
+    pub(super) timeline: Timeline,
+    pub(super) shared: Arc<Shared>,
+    pub(super) commands: Receiver<Command>,
+    pub(super) refusals: SyncSender<(CommandKey, CommandError)>,
+    /// The last body name that the timeline gave away.
+    pub(super) reserved: BodyId,
+    /// Commands heard at a time, so that a flood of them cannot keep physics from its work.
+    pub(super) command_capacity: usize,
+    pub(super) hinder: Hinder,
+}
+
+/// Starts the thread; returns once it can be woken.
+pub(super) fn spawn(mut physics: Physics, threads: Threads) -> io::Result<JoinHandle<()>> {
+    let (ready, is_ready) = sync_channel::<()>(1);
+    let shared = Arc::clone(&physics.shared);
+    let thread = std::thread::Builder::new().name("forerun-physics".to_owned()).spawn(move || {
+        // The whole loop lives on a thread of the pool: parallel loops then start without handing over from thread to thread.
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            threads.install(|| {
+                // The thread is new and the cell empty; were it not, the first sleeper would be the right one.
+                let _ = physics.shared.sleeper.set(std::thread::current());
+                let _ = ready.send(());
+                physics.run();
+            });
+        }));
+        if let Err(panic) = ended {
+            *shared.panic.lock().unwrap_or_else(PoisonError::into_inner) = Some(message_of(&*panic));
+        }
+    })?;
+    // An error means that the thread ended before it was ready, which the first call of `show` reports.
+    let _ = is_ready.recv();
+    Ok(thread)
+}
+
+impl Physics {
+    fn run(&mut self) {
+        while !self.shared.stopping.load(Ordering::Relaxed) {
+            self.hear_commands();
+            self.timeline.set_display(Frame(self.shared.display.load(Ordering::Relaxed)));
+            match self.timeline.advance() {
+                Progress::Advanced(advance) => {
+                    let slices_max = u8::try_from(advance.slices_max).unwrap_or(u8::MAX);
+                    let areas_active = self.timeline.areas_active(advance.frame);
+                    self.shared.notes.write(advance.frame, FrameNote { slices_max, areas_active });
+                    (self.hinder)();
+                    self.publish();
+                }
+                Progress::Idle => std::thread::park(),
+            }
+        }
+    }
+
+    /// Takes the commands that wait.
+    fn hear_commands(&mut self) {
+        let heard: Vec<Command> = self.commands.try_iter().take(self.command_capacity).collect();
+        if heard.is_empty() {
+            return;
+        }
+        for command in heard {
+            if let Change::Add { body, .. } = &command.change {
+                self.reserve_up_to(*body);
+            }
+            let key = command.key;
+            if let Err(error) = self.timeline.submit(command) {
+                // When it is full, nobody has asked for refusals for a whole queue's length, and nobody wants this one either.
+                let _ = self.refusals.try_send((key, error));
+            }
+        }
+        self.publish();
+    }
+
+    /// The display gives names to new bodies itself, so as not to wait for an answer; here the timeline learns them. A name that
+    /// was not given by the display stays unknown, and the timeline refuses it.
+    fn reserve_up_to(&mut self, body: BodyId) {
+        let given = self.shared.next_body.load(Ordering::Relaxed);
+        while self.reserved < body && self.reserved.0 + 1 < given {
+            self.reserved = self.timeline.reserve_body();
+        }
+    }
+
+    fn publish(&self) {
+        self.shared
+            .published
+            .store(Arc::new(Published { snapshot: self.timeline.snapshot(), stats: self.timeline.stats() }));
+    }
+}
+
+fn message_of(panic: &(dyn Any + Send)) -> String {
+    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
+        (Some(text), _) => (*text).to_owned(),
+        (_, Some(text)) => text.clone(),
+        _ => "with a value that is no text".to_owned(),
+    }
+}

@@ -1,0 +1,113 @@
+//! What is played, how fast and by whom.
+
+use std::fmt;
+use std::num::NonZeroU16;
+use std::time::Duration;
+
+use crate::driver::{ChangeError, DriverError, ThreadsError};
+use crate::staging::StagingError;
+
+/// Who steps the physics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriverKind {
+    /// Physics runs ahead in a thread of its own.
+    Decoupled,
+    /// Step, then show: the traditional model.
+    Coupled,
+}
+
+impl DriverKind {
+    /// `decoupled` or `coupled`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            DriverKind::Decoupled => "decoupled",
+            DriverKind::Coupled => "coupled",
+        }
+    }
+}
+
+/// How a scene is played.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaybackSettings {
+    /// Who steps the physics. Default decoupled.
+    pub driver: DriverKind,
+    /// Length of the playback. Seconds of real time, above 0. Default 10.
+    pub seconds: f64,
+    /// Pictures per second, above 0. Default 30.
+    pub fps: f64,
+    /// Most frames that the decoupled physics is ahead of the display. Default 100.
+    pub lookahead: u32,
+    /// Threads of the physics; `None` for one per core. Default `None`.
+    pub threads: Option<NonZeroU16>,
+    /// Makes every step this much slower. Default 0.
+    pub slow_down: Duration,
+}
+
+impl Default for PlaybackSettings {
+    fn default() -> Self {
+        PlaybackSettings {
+            driver: DriverKind::Decoupled,
+            seconds: 10.0,
+            fps: 30.0,
+            lookahead: 100,
+            threads: None,
+            slow_down: Duration::ZERO,
+        }
+    }
+}
+
+/// Why a scene cannot be played, or not to its end.
+#[derive(Debug)]
+pub enum PlaybackError {
+    /// The scene cannot be brought to the engine.
+    Staging(StagingError),
+    /// The threads cannot be started.
+    Threads(ThreadsError),
+    /// The decoupled driver failed.
+    Driver(DriverError),
+    /// A command of the scene cannot be carried out.
+    Change {
+        /// Name of the scene.
+        scene: String,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl fmt::Display for PlaybackError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PlaybackError::Staging(error) => write!(f, "{error}"),
+            PlaybackError::Threads(error) => write!(f, "{error}"),
+            PlaybackError::Driver(error) => write!(f, "{error}"),
+            PlaybackError::Change { scene, message } => write!(f, "{scene}: commands: {message}"),
+        }
+    }
+}
+
+impl std::error::Error for PlaybackError {}
+
+impl From<StagingError> for PlaybackError {
+    fn from(error: StagingError) -> Self {
+        PlaybackError::Staging(error)
+    }
+}
+
+impl From<ThreadsError> for PlaybackError {
+    fn from(error: ThreadsError) -> Self {
+        PlaybackError::Threads(error)
+    }
+}
+
+impl From<DriverError> for PlaybackError {
+    fn from(error: DriverError) -> Self {
+        PlaybackError::Driver(error)
+    }
+}
+
+impl PlaybackError {
+    pub(crate) fn change(scene: &str, error: &ChangeError) -> Self {
+        PlaybackError::Change { scene: scene.to_owned(), message: error.to_string() }
+    }
+}

@@ -1,0 +1,132 @@
+//! Staging: from a scene to a timeline or a world, and from a scene's commands to changes.
+
+use std::fmt;
+
+use forerun_dynamics::{BodyError, World};
+use forerun_scene::{Scene, SceneCommand, SceneError};
+use forerun_timeline::{
+    Change, Command, CommandError, CommandKey, Frame, Timeline, TimelineError, TimelineSettings,
+};
+
+use crate::BodyId;
+
+/// Why a scene cannot be brought to the engine.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StagingError {
+    /// The scene itself is at fault: file, place and remedy.
+    Scene(SceneError),
+    /// A body of the scene is not possible.
+    Body {
+        /// Name of the scene.
+        scene: String,
+        /// Number of the body.
+        index: usize,
+        /// What is wrong with it.
+        error: BodyError,
+    },
+    /// A command of the scene is not possible.
+    Command {
+        /// Name of the scene.
+        scene: String,
+        /// What is wrong with it.
+        error: CommandError,
+    },
+}
+
+impl fmt::Display for StagingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            StagingError::Scene(error) => write!(f, "{error}"),
+            StagingError::Body { scene, index, error } => {
+                write!(f, "{scene}: bodies[{index}].{error}; change the body in the scene")
+            }
+            StagingError::Command { scene, error } => write!(f, "{scene}: commands: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for StagingError {}
+
+impl From<SceneError> for StagingError {
+    fn from(error: SceneError) -> Self {
+        StagingError::Scene(error)
+    }
+}
+
+/// A timeline of the scene's bodies at frame 0, its commands in it as if they had always been known.
+///
+/// # Errors
+/// When the scene, a body or a command is not possible.
+pub fn timeline_of(scene: &Scene, settings: TimelineSettings) -> Result<Timeline, StagingError> {
+    let mut timeline = bare_timeline_of(scene, settings)?;
+    for (sequence, command) in changes_of(scene)?.into_iter().enumerate() {
+        if matches!(command.change, Change::Add { .. }) {
+            timeline.reserve_body();
+        }
+        let key = CommandKey { frame: command.frame, source: 0, sequence: sequence as u64 };
+        timeline
+            .submit(Command { key, change: command.change })
+            .map_err(|error| StagingError::Command { scene: scene.name.clone(), error })?;
+    }
+    Ok(timeline)
+}
+
+/// A timeline of the scene's bodies at frame 0 alone.
+pub(crate) fn bare_timeline_of(scene: &Scene, settings: TimelineSettings) -> Result<Timeline, StagingError> {
+    Timeline::new(&scene.bodies()?, scene.environment(), settings).map_err(
+        |TimelineError { index, error }| StagingError::Body { scene: scene.name.clone(), index, error },
+    )
+}
+
+/// A world of the scene's bodies at frame 0, without its commands.
+///
+/// # Errors
+/// When the scene or a body is not possible.
+pub fn world_of(scene: &Scene) -> Result<World, StagingError> {
+    let mut world = World::new(scene.environment());
+    for (index, def) in scene.bodies()?.iter().enumerate() {
+        let added = world.add(def);
+        added.map_err(|error| StagingError::Body { scene: scene.name.clone(), index, error })?;
+    }
+    Ok(world)
+}
+
+/// A change and the frame from which on it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TimedChange {
+    pub(crate) frame: Frame,
+    pub(crate) change: Change,
+}
+
+/// The scene's commands in the order of their frames. Bodies keep their numbers as names.
+pub(crate) fn changes_of(scene: &Scene) -> Result<Vec<TimedChange>, StagingError> {
+    let commands = scene.commands()?;
+    // A timeline's first frame is given: commands act after it.
+    let frame = |frame: u64| Frame(frame.max(1));
+    Ok(commands
+        .into_iter()
+        .map(|c| TimedChange { frame: frame(c.frame), change: change_of(c.command) })
+        .collect())
+}
+
+fn change_of(command: SceneCommand) -> Change {
+    match command {
+        SceneCommand::Add { body, def } => Change::Add { body: BodyId(body), def },
+        SceneCommand::Remove { body } => Change::Remove { body: BodyId(body) },
+        SceneCommand::Move { body, pose } => Change::Move { body: BodyId(body), pose },
+        SceneCommand::Push { body, impulse, point } => {
+            Change::Push { body: BodyId(body), impulse, at_point: point }
+        }
+        SceneCommand::SetVelocity { body, velocity, angular_velocity } => {
+            Change::SetVelocity { body: BodyId(body), velocity, angular_velocity }
+        }
+        SceneCommand::SetForce { body, force, torque } => {
+            Change::SetForce { body: BodyId(body), force, torque }
+        }
+        SceneCommand::SetMaterial { body, material } => Change::SetMaterial { body: BodyId(body), material },
+        SceneCommand::SetKind { body, kind } => Change::SetKind { body: BodyId(body), kind },
+        SceneCommand::Hold { body, spring } => Change::Hold { body: BodyId(body), spring },
+        SceneCommand::Release { body } => Change::Release { body: BodyId(body) },
+        SceneCommand::SetGravity { gravity } => Change::SetGravity { gravity },
+    }
+}
