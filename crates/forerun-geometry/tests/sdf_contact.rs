@@ -409,3 +409,15 @@ fn a_box_stands_on_one_of_the_same_size() {
         }
     }
 }
+
+#[test]
+fn a_bar_past_the_middle_of_another_is_not_pulled_through() {
+    // Sections of 8 cm, 5 cm inside: the nearest way out of the lower bar for the lowest points is down.
+    let frame = shape(meshes::frame(0.5, 0.04));
+    let mut upper = at(&frame, Vec3::new(0.013, 0.03, 0.021));
+    upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, 0.7);
+    let points = all_points(&contact(&at(&frame, Vec3::ZERO), &upper));
+    // Edges may be pushed out askew, but nothing straight down.
+    let down = points.iter().filter(|p| p.normal.y < -0.9).count();
+    assert!(!points.is_empty() && down == 0, "{down} of {} pull it through", points.len());
+}
