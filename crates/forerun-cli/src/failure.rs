@@ -19,7 +19,10 @@ pub(crate) enum Failure {
 impl Failure {
     /// A file or folder that cannot be written.
     pub(crate) fn write(path: &Path, error: &io::Error) -> Self {
-        Failure::Input(format!("{}: cannot be written: {error}; choose another folder with --out", path.display()))
+        Failure::Input(format!(
+            "{}: cannot be written: {error}; choose another folder with --out",
+            path.display()
+        ))
     }
 
     /// A command that this version only knows by name.

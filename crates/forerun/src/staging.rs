@@ -4,7 +4,9 @@ use std::fmt;
 
 use forerun_dynamics::{BodyError, World};
 use forerun_scene::{Scene, SceneCommand, SceneError};
-use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Timeline, TimelineError, TimelineSettings};
+use forerun_timeline::{
+    Change, Command, CommandError, CommandKey, Frame, Timeline, TimelineError, TimelineSettings,
+};
 
 use crate::BodyId;
 
@@ -71,9 +73,9 @@ pub fn timeline_of(scene: &Scene, settings: TimelineSettings) -> Result<Timeline
 
 /// A timeline of the scene's bodies at frame 0 alone.
 pub(crate) fn bare_timeline_of(scene: &Scene, settings: TimelineSettings) -> Result<Timeline, StagingError> {
-    Timeline::new(&scene.bodies()?, scene.environment(), settings).map_err(|TimelineError { index, error }| {
-        StagingError::Body { scene: scene.name.clone(), index, error }
-    })
+    Timeline::new(&scene.bodies()?, scene.environment(), settings).map_err(
+        |TimelineError { index, error }| StagingError::Body { scene: scene.name.clone(), index, error },
+    )
 }
 
 /// A world of the scene's bodies at frame 0, without its commands.
@@ -101,7 +103,10 @@ pub(crate) fn changes_of(scene: &Scene) -> Result<Vec<TimedChange>, StagingError
     let commands = scene.commands()?;
     // A timeline's first frame is given: commands act after it.
     let frame = |frame: u64| Frame(frame.max(1));
-    Ok(commands.into_iter().map(|c| TimedChange { frame: frame(c.frame), change: change_of(c.command) }).collect())
+    Ok(commands
+        .into_iter()
+        .map(|c| TimedChange { frame: frame(c.frame), change: change_of(c.command) })
+        .collect())
 }
 
 fn change_of(command: SceneCommand) -> Change {

@@ -13,7 +13,8 @@ pub(crate) fn mechanical_j(world: &World) -> f64 {
         let mass = 1.0 / f64::from(body.inverse_mass);
         let spin = state.rotation.conjugate() * state.angular_velocity;
         let moments = body.inverse_inertia.to_array().map(|inverse| 1.0 / f64::from(inverse));
-        let turning: f64 = (spin.to_array().iter().zip(moments)).map(|(w, i)| i * f64::from(*w).powi(2)).sum();
+        let turning: f64 =
+            (spin.to_array().iter().zip(moments)).map(|(w, i)| i * f64::from(*w).powi(2)).sum();
         let moving = mass * dot(state.velocity, state.velocity);
         0.5 * (moving + turning) - mass * f64::from(body.gravity_scale) * dot(gravity, state.position)
     };
@@ -41,7 +42,8 @@ mod tests {
     #[test]
     fn a_spinning_box_in_the_air_has_the_energy_of_the_formula() {
         let mut world = World::new(Environment::default());
-        let mut def = BodyDef::new(Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) })).at(Vec3::Y * 2.0);
+        let mut def =
+            BodyDef::new(Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) })).at(Vec3::Y * 2.0);
         def.velocity = Vec3::new(3.0, 0.0, 0.0);
         def.angular_velocity = Vec3::new(0.0, 0.0, 6.0);
         world.add(&def).expect("a plain box");

@@ -38,22 +38,36 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
 }
 
 fn print_tables(measured: &[Measurement]) -> Result<(), Failure> {
-    print("| scene | bodies | frames | threads | mean ms | median ms | p99 ms | max ms | first ms | body-steps/s |")?;
+    print(
+        "| scene | bodies | frames | threads | mean ms | median ms | p99 ms | max ms | first ms | body-steps/s |",
+    )?;
     print("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|")?;
     for m in measured {
         let (step, rate) = (m.step_ms, m.body_steps_per_s / 1e6);
         print(&format!(
             "| {} | {} | {} | {} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} | {rate:.2} M |",
-            m.scene, m.bodies, m.frames, m.threads, step.mean, step.median, step.p99, step.max, m.first_step_ms
+            m.scene,
+            m.bodies,
+            m.frames,
+            m.threads,
+            step.mean,
+            step.median,
+            step.p99,
+            step.max,
+            m.first_step_ms
         ))?;
     }
-    print("\n| scene | collisions | velocities | contact graph | contacts | shock propagation | positions |")?;
+    print(
+        "\n| scene | collisions | velocities | contact graph | contacts | shock propagation | positions |",
+    )?;
     print("|---|---:|---:|---:|---:|---:|---:|")?;
     for m in measured {
         let cells: Vec<String> = m.stage_ms.in_order().iter().map(|ms| format!("{ms:.3}")).collect();
         print(&format!("| {} | {} |", m.scene, cells.join(" | ")))?;
     }
-    print("\n| scene | overlap max mm | at end mm | energy max/first | end speed m/s | B/body/frame | peak MiB | state hash |")?;
+    print(
+        "\n| scene | overlap max mm | at end mm | energy max/first | end speed m/s | B/body/frame | peak MiB | state hash |",
+    )?;
     print("|---|---:|---:|---:|---:|---:|---:|---|")?;
     measured.iter().try_for_each(print_guards)
 }

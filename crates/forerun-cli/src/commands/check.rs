@@ -2,7 +2,9 @@
 
 use std::num::NonZeroU16;
 
-use forerun::timeline::check::{CheckMoment, CheckReport, CheckSettings, Mismatch, check, full_run, mismatches};
+use forerun::timeline::check::{
+    CheckMoment, CheckReport, CheckSettings, Mismatch, check, full_run, mismatches,
+};
 use forerun::{BodyDef, Clock, Environment, Scene, Threads, Timeline};
 use serde::Serialize;
 
@@ -70,7 +72,11 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), Failure> {
         edit_ms: Spread::of(&times.edit_ms),
         full_ms: Spread::of(&times.full_ms),
     };
-    if args.json { print_json(&verdict)? } else { print_verdict(&verdict)? }
+    if args.json {
+        print_json(&verdict)?
+    } else {
+        print_verdict(&verdict)?
+    }
     judge(&verdict, example)
 }
 
@@ -109,7 +115,8 @@ fn check_timed(
 /// The scene without edits, to compare thread counts with each other.
 fn unedited(scene: &Scene, bodies: &[BodyDef], frames: u32) -> Result<Timeline, Failure> {
     let environment: Environment = scene.environment();
-    full_run(bodies, [], environment, frames).map_err(|error| Failure::Input(format!("{}: {error}", scene.name)))
+    full_run(bodies, [], environment, frames)
+        .map_err(|error| Failure::Input(format!("{}: {error}", scene.name)))
 }
 
 fn judge(verdict: &Verdict, example: Option<Mismatch>) -> Result<(), Failure> {
@@ -133,8 +140,17 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
     ))?;
     print(&format!("  states that differ from a full run {:>12}", verdict.mismatches))?;
     print(&format!("  states truly changed               {affected:>12}"))?;
-    print(&format!("  states computed for it             {recomputed:>12}   {:.2} of those changed", per(*recomputed, *affected)))?;
+    print(&format!(
+        "  states computed for it             {recomputed:>12}   {:.2} of those changed",
+        per(*recomputed, *affected)
+    ))?;
     print(&format!("  states of full re-simulations      {full:>12}"))?;
-    print(&format!("  ms per edit                {:>9.3} mean {:>9.3} median {:>9.3} max", edit_ms.mean, edit_ms.median, edit_ms.max))?;
-    print(&format!("  ms per full re-simulation  {:>9.3} mean {:>9.3} median {:>9.3} max", full_ms.mean, full_ms.median, full_ms.max))
+    print(&format!(
+        "  ms per edit                {:>9.3} mean {:>9.3} median {:>9.3} max",
+        edit_ms.mean, edit_ms.median, edit_ms.max
+    ))?;
+    print(&format!(
+        "  ms per full re-simulation  {:>9.3} mean {:>9.3} median {:>9.3} max",
+        full_ms.mean, full_ms.median, full_ms.max
+    ))
 }

@@ -56,7 +56,9 @@ pub(crate) fn main_job() -> Result<(), Failure> {
     let playback = play_with_bar(&scene, &settings)?;
     let files = write_files(&playback, &folder)?;
     print_result(&playback.report, &files)?;
-    print("\nNext: `forerun experiment all` sets the traditional model beside it; `forerun --help` lists the rest.")
+    print(
+        "\nNext: `forerun experiment all` sets the traditional model beside it; `forerun --help` lists the rest.",
+    )
 }
 
 /// Plays a scene with a progress bar where there is a terminal.
@@ -74,16 +76,29 @@ fn write_files(playback: &Playback, folder: &Path) -> Result<Vec<PathBuf>, Failu
     write_playback(playback, folder)?;
     let Report { scene, driver, .. } = &playback.report;
     let recorded = Recorded { label: driver, rows: &playback.rows };
-    let queue = figures::queue(&format!("{scene}, {driver}: states in the queue"), recorded.rows);
+    let first = match driver.as_str() {
+        // The traditional model has no queue; what varies is its time step.
+        "coupled" => {
+            let title = format!("{scene}, {driver}: time step");
+            charts::draw(&[figures::time_steps(&title, &[recorded])], &folder.join("time_step"))?
+        }
+        _ => {
+            let title = format!("{scene}, {driver}: states in the queue");
+            charts::draw(&[figures::queue(&title, recorded.rows)], &folder.join("queue"))?
+        }
+    };
     let times = figures::times(&format!("{scene}, {driver}: time shown and computed"), recorded, None);
     let mut files = vec![folder.join("queue.csv"), folder.join("report.json")];
-    files.extend(charts::draw(&[queue], &folder.join("queue"))?);
+    files.extend(first);
     files.extend(charts::draw(&[times], &folder.join("time"))?);
     Ok(files)
 }
 
 fn print_result(report: &Report, files: &[PathBuf]) -> Result<(), Failure> {
-    print(&format!("{}, {}: {} pictures in {:.1} s", report.scene, report.driver, report.pictures, report.seconds))?;
+    print(&format!(
+        "{}, {}: {} pictures in {:.1} s",
+        report.scene, report.driver, report.pictures, report.seconds
+    ))?;
     print(&format!("  late pictures                {:>8}", report.late_pictures))?;
     print(&format!("  starved pictures             {:>8}", report.starved_pictures))?;
     print(&format!("  longest time between two     {:>8.1} ms", report.longest_stall_ms))?;

@@ -21,8 +21,11 @@ fn list() -> Result<(), Failure> {
     print(&format!("{:<16} {:>6}  {:<24} {}", "SCENE", "SIZE", "THE SIZE COUNTS", "WHAT IT SHOWS"))?;
     for built_in in builtin::list() {
         let size = built_in.default_size.map_or_else(String::new, |size| size.to_string());
-        let line = format!("{:<16} {size:>6}  {:<24} {}", built_in.name, built_in.size_counts, built_in.description);
+        let line =
+            format!("{:<16} {size:>6}  {:<24} {}", built_in.name, built_in.size_counts, built_in.description);
         print(line.trim_end())?;
     }
-    print("\nAnother size goes behind a colon (dominoes:1000); `forerun scenes NAME` prints a scene as a file.")
+    print(
+        "\nAnother size goes behind a colon (dominoes:1000); `forerun scenes NAME` prints a scene as a file.",
+    )
 }

@@ -54,7 +54,11 @@ pub(crate) fn dominoes(scene: Scene) -> Plan {
         variants: vec![DECOUPLED, COUPLED],
         figures: [
             figure("figure_5_2", "Figure 5.2: dominoes, states in the queue", FigureKind::Queue),
-            figure("figure_5_3", "Figure 5.3: dominoes, display and physics against real time", FigureKind::Times),
+            figure(
+                "figure_5_3",
+                "Figure 5.3: dominoes, display and physics against real time",
+                FigureKind::Times,
+            ),
         ],
     }
 }
@@ -69,7 +73,11 @@ pub(crate) fn meshes(scene: Scene) -> Plan {
         variants: vec![DECOUPLED, COUPLED],
         figures: [
             figure("figure_5_5", "Figure 5.5: meshes, states in the queue", FigureKind::Queue),
-            figure("figure_5_6", "Figure 5.6: meshes, display and physics against real time", FigureKind::Times),
+            figure(
+                "figure_5_6",
+                "Figure 5.6: meshes, display and physics against real time",
+                FigureKind::Times,
+            ),
         ],
     }
 }
@@ -83,8 +91,16 @@ pub(crate) fn interaction(scene: Scene) -> Plan {
         seconds: 30.0,
         variants: vec![DECOUPLED, COUPLED],
         figures: [
-            figure("figure_5_8", "Figure 5.8: interaction, fewest and most states in the queue", FigureKind::Queue),
-            figure("figure_5_9", "Figure 5.9: interaction, display and physics against real time", FigureKind::Times),
+            figure(
+                "figure_5_8",
+                "Figure 5.8: interaction, fewest and most states in the queue",
+                FigureKind::Queue,
+            ),
+            figure(
+                "figure_5_9",
+                "Figure 5.9: interaction, display and physics against real time",
+                FigureKind::Times,
+            ),
         ],
     }
 }

@@ -45,6 +45,8 @@ pub struct Picture {
     pub frame: Frame,
     /// How that frame was computed; none while it is not.
     pub note: Option<FrameNote>,
+    /// How far back commands threw the physics since the picture before: the last frame that was true for all bodies right after.
+    pub dropped_to: Option<Frame>,
     /// Work of the physics so far.
     pub stats: Stats,
 }
@@ -144,7 +146,7 @@ impl Decoupled {
         self.time_s = self.time_s.max(time_s);
         self.shared.tell_display(self.displayed_frame());
         self.alive()?;
-        Ok(self.last_picture())
+        Ok(Picture { dropped_to: self.shared.take_drop(), ..self.last_picture() })
     }
 
     /// The picture at the last display time, with what physics knows by now.
@@ -157,6 +159,7 @@ impl Decoupled {
             time_s: self.time_s,
             frame,
             note: self.shared.notes.read(frame.min(published.snapshot.horizon())),
+            dropped_to: None,
             stats: published.stats,
         }
     }
@@ -167,11 +170,8 @@ impl Decoupled {
     /// [`DriverError::QueueFull`] when too many commands wait; [`DriverError::Panicked`]. Whether the change is possible is found
     /// out by the physics thread: see [`Decoupled::refusals`].
     pub fn change(&mut self, change: Change) -> Result<CommandKey, DriverError> {
-        let key = CommandKey {
-            frame: self.displayed_frame().next(),
-            source: 0,
-            sequence: self.next_sequence,
-        };
+        let key =
+            CommandKey { frame: self.displayed_frame().next(), source: 0, sequence: self.next_sequence };
         self.submit(Command { key, change })?;
         self.next_sequence += 1;
         Ok(key)

@@ -13,13 +13,12 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
 
 use arc_swap::ArcSwap;
-use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline};
+use forerun_timeline::{
+    Change, Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline,
+};
 
 use super::frame_notes::{FrameNote, FrameNotes};
 use crate::{BodyId, Threads};
-
-/// Frames whose notes are kept: more than a sensible lookahead, in 128 KiB. With a longer one, far frames have no notes.
-const NOTES_KEPT: usize = 1 << 14;
 
 /// Done after every computed frame.
 pub(super) type Hinder = Box<dyn FnMut() + Send>;
@@ -41,6 +40,8 @@ pub(super) struct Shared {
     pub(super) panic: Mutex<Option<String>>,
     /// The first body name that is not given away.
     pub(super) next_body: AtomicU32,
+    /// The earliest frame up to which all was true right after commands were heard, since the display last asked.
+    dropped_to: AtomicU64,
     display: AtomicU64,
     stopping: AtomicBool,
     sleeper: OnceLock<Thread>,
@@ -49,11 +50,18 @@ pub(super) struct Shared {
 impl Shared {
     /// `next_body` is the last name that the timeline gave away, and nobody has used.
     pub(super) fn new(timeline: &Timeline, next_body: BodyId) -> Self {
+        let settings = timeline.settings();
+        // The newest note is at most the lookahead after the displayed frame; what is kept of the past may be shown too.
+        let notes_kept = settings.lookahead as usize + settings.past as usize + 2;
         Shared {
-            published: ArcSwap::from_pointee(Published { snapshot: timeline.snapshot(), stats: timeline.stats() }),
-            notes: FrameNotes::with_capacity(NOTES_KEPT),
+            published: ArcSwap::from_pointee(Published {
+                snapshot: timeline.snapshot(),
+                stats: timeline.stats(),
+            }),
+            notes: FrameNotes::with_capacity(notes_kept),
             panic: Mutex::new(None),
             next_body: AtomicU32::new(next_body.0),
+            dropped_to: AtomicU64::new(u64::MAX),
             display: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
             sleeper: OnceLock::new(),
@@ -66,6 +74,11 @@ impl Shared {
         if self.display.swap(frame.0, Ordering::Relaxed) != frame.0 {
             self.wake();
         }
+    }
+
+    /// How far back commands have thrown the physics since the last call; none when no command came.
+    pub(super) fn take_drop(&self) -> Option<Frame> {
+        Some(self.dropped_to.swap(u64::MAX, Ordering::Relaxed)).filter(|frame| *frame != u64::MAX).map(Frame)
     }
 
     /// Asks the physics to end.
@@ -153,6 +166,7 @@ impl Physics {
                 let _ = self.refusals.try_send((key, error));
             }
         }
+        self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
         self.publish();
     }
 
@@ -166,10 +180,9 @@ impl Physics {
     }
 
     fn publish(&self) {
-        self.shared.published.store(Arc::new(Published {
-            snapshot: self.timeline.snapshot(),
-            stats: self.timeline.stats(),
-        }));
+        self.shared
+            .published
+            .store(Arc::new(Published { snapshot: self.timeline.snapshot(), stats: self.timeline.stats() }));
     }
 }
 

@@ -27,7 +27,11 @@ pub(crate) fn run() -> Vec<Figure> {
     let state = world.states()[0];
     let speed = VELOCITY + environment.gravity * time;
     vec![
-        Figure::at_most("distance from the parabola after 2 s, m", f64::from(state.position.distance(expected)), 0.05),
+        Figure::at_most(
+            "distance from the parabola after 2 s, m",
+            f64::from(state.position.distance(expected)),
+            0.05,
+        ),
         Figure::near("vertical speed after 2 s, m/s", f64::from(state.velocity.y), f64::from(speed.y), 1e-3),
     ]
 }

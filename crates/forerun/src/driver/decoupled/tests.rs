@@ -89,7 +89,8 @@ fn a_local_change_acts_on_the_first_frame_after_the_displayed_one() {
     assert_eq!(key.frame, Frame(11));
     assert!(eventually(|| driver.last_picture().stats.edits.recomputed > 0 && full(&driver)));
     let after = driver.last_picture();
-    let state = |picture: &Picture, body, frame| *picture.snapshot.state(BodyId(body), Frame(frame)).expect("kept");
+    let state =
+        |picture: &Picture, body, frame| *picture.snapshot.state(BodyId(body), Frame(frame)).expect("kept");
     assert!(state(&after, 1, 10).same_bits(&state(&before, 1, 10)), "a state on the screen was taken back");
     assert!(state(&after, 1, 11).velocity.x > 0.5);
     assert!(state(&after, 2, 20).same_bits(&state(&before, 2, 20)), "a body out of reach was changed");
