@@ -1,1 +1,43 @@
-fn main() {}
+//! Chores of this repository: `cargo xtask tidy`.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+mod files;
+mod floors;
+mod map;
+mod rooms;
+mod tidy;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["tidy"] => tidy_up(),
+        _ => {
+            eprintln!("usage: cargo xtask tidy");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn tidy_up() -> ExitCode {
+    // xtask lies in the root of the repository.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    match tidy::complaints(&root) {
+        Ok(complaints) if complaints.is_empty() => {
+            eprintln!("tidy");
+            ExitCode::SUCCESS
+        }
+        Ok(complaints) => {
+            for complaint in &complaints {
+                eprintln!("{complaint}");
+            }
+            eprintln!("{} complaints", complaints.len());
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("the repository cannot be read: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

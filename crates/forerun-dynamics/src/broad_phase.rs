@@ -111,8 +111,7 @@ impl Grid {
 
     fn is_large(&self, aabb: &Aabb) -> bool {
         let extent = (aabb.max - aabb.min).max_element();
-        // Also for extents that are not a number.
-        !(extent <= self.edge)
+        extent > self.edge || extent.is_nan()
     }
 
     /// The area that holds a point. Monotone in every coordinate, also outside the grid.

@@ -116,7 +116,7 @@ impl Plan {
 
 /// Members of islands that are at a fixpoint: every dynamic one has been at rest with all of its island for a frame, and nothing moves into it.
 fn resting(members: &[Member], roots: &Islands, environment: &Environment) -> Vec<bool> {
-    let full = environment.settings.rest_frames;
+    let full = environment.settings.rest_frames();
     let mut awake = vec![full == 0; members.len()];
     for (i, m) in members.iter().enumerate() {
         if m.body.is_dynamic() && m.state.rest <= full {

@@ -28,7 +28,7 @@ pub struct StepSettings {
     pub first_sweeps: u32,
     /// Contacts are found this far ahead of touching, and further for fast bodies. Metres, default 0.02.
     pub contact_margin_m: f32,
-    /// Overlap that is left alone. Metres, default 0.005.
+    /// Overlap that is left alone. Metres, default 0.0005.
     pub overlap_allowed_m: f32,
     /// Part of the remaining overlap that one frame removes. 0 to 1, default 0.3.
     pub overlap_recovery: f32,
@@ -38,8 +38,11 @@ pub struct StepSettings {
     pub shock_yield: f32,
     /// A body quieter than this counts towards rest: speed, spin times radius, and change of pose. m/s, default 0.05.
     pub rest_speed: f32,
-    /// Frames that a body must be quiet to come to rest; 0 switches rest off. Default 30.
-    pub rest_frames: u32,
+    /// How long a body must be quiet to come to rest, or a quarter of it where it overlaps by less than twice what is allowed; 0 switches
+    /// rest off. Seconds, default 2.
+    pub rest_seconds: f32,
+    /// A body that overlaps deeper than this does not come to rest. Metres, default 0.01.
+    pub rest_overlap_m: f32,
     /// Most slices that a frame of an island is cut into (a power of two). 1 switches the return in time off. Default 8.
     pub slices_max: u32,
 }
@@ -51,13 +54,23 @@ impl Default for StepSettings {
             substeps: 4,
             first_sweeps: 3,
             contact_margin_m: 0.02,
-            overlap_allowed_m: 0.005,
+            overlap_allowed_m: 0.0005,
             overlap_recovery: 0.3,
             recovery_speed_max: 0.5,
             shock_yield: 0.5,
             rest_speed: 0.05,
-            rest_frames: 30,
+            rest_seconds: 2.0,
+            rest_overlap_m: 0.01,
             slices_max: 8,
         }
+    }
+}
+
+impl StepSettings {
+    /// How many frames a body must be quiet to come to rest: a state with so many in [`BodyState::rest`](crate::BodyState::rest) is at rest, and one
+    /// more says that its whole island is. 0 when rest is off.
+    #[must_use]
+    pub fn rest_frames(&self) -> u32 {
+        if self.rest_seconds > 0.0 { (self.rest_seconds / self.frame_seconds).max(1.0) as u32 } else { 0 }
     }
 }

@@ -8,12 +8,13 @@
 pub mod bounds;
 pub mod contact;
 pub mod mass;
+pub mod mesh_file;
 pub mod pose;
 pub mod ray;
 pub mod sdf;
 pub mod shape;
 
-pub use bounds::Aabb;
+pub use bounds::{Aabb, BoundingSphere, Obb};
 pub use contact::{ContactPoint, Manifold, Motion, Placed};
 pub use glam::{Mat3, Quat, Vec3};
 pub use mass::MassProperties;

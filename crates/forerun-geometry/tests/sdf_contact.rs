@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use forerun_geometry::contact::mesh::mesh_manifolds;
+use forerun_geometry::contact::contact_manifolds;
 use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Mesh, Sphere};
 use forerun_geometry::{ContactPoint, Manifold, Motion, Placed, Pose, Quat, Shape, Vec3};
 
@@ -27,7 +27,10 @@ fn at(shape: &Shape, position: Vec3) -> Placed<'_> {
 
 fn contact(first: &Placed, second: &Placed) -> Vec<Manifold> {
     let mut out = Vec::new();
-    mesh_manifolds(first, second, MARGIN, &mut out);
+    // As far as they may move towards each other.
+    let turning = (first.motion.angular.length() + second.motion.angular.length()) * 2.0;
+    let motion = (first.motion.linear - second.motion.linear).length() + turning;
+    contact_manifolds(first, second, MARGIN.max(1.2 * motion), &mut out);
     for m in &out {
         assert!((1..=4).contains(&m.count));
         assert!(m.normal.is_normalized());

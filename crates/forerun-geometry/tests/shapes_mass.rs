@@ -178,7 +178,7 @@ fn a_torus_of_triangles_nears_the_formula_from_below() {
     let along = mass * (major * major + 0.75 * minor * minor);
     let across = mass * (0.5 * major * major + 0.625 * minor * minor);
     let mut last = (f64::INFINITY, f64::INFINITY);
-    for (segments, sides) in [(24, 8), (48, 16), (96, 32), (384, 128)] {
+    for (segments, sides) in [(24, 8), (48, 16), (96, 32), (192, 64)] {
         let torus = mesh_make::torus(major as f32, minor as f32, segments, sides).unwrap();
         let m = Shape::from(torus).mass_properties(1.0);
         let short = (1.0 - f64::from(m.mass) / mass, 1.0 - f64::from(m.principal_inertia.y) / along);
@@ -186,7 +186,7 @@ fn a_torus_of_triangles_nears_the_formula_from_below() {
         assert!((f64::from(m.principal_inertia.x) / across - 1.0).abs() < 2.0 * short.0);
         last = short;
     }
-    assert!(last.0 < 1e-3 && last.1 < 1e-3, "{last:?}");
+    assert!(last.0 < 3e-3 && last.1 < 3e-3, "{last:?}");
 }
 
 #[test]

@@ -232,6 +232,22 @@ fn no_ray_slips_through_edges_or_corners() {
 }
 
 #[test]
+fn a_ray_that_grazes_a_mesh_does_not_start_in_it() {
+    let mut random = Random(25);
+    for mesh in [mesh_make::ball(1.0, 8).unwrap(), mesh_make::cuboid(Vec3::new(1.0, 0.5, 0.25)).unwrap()] {
+        let shape = Shape::from(mesh.clone());
+        for v in &mesh.vertices {
+            for _ in 0..50 {
+                let along = v.cross(random.direction()).normalize();
+                let ray = Ray { origin: *v - along * 3.0, direction: along };
+                let hit = shape.cast_ray(&Pose::IDENTITY, &ray, 10.0);
+                assert!(hit.is_none_or(|hit| hit.distance > 1.0), "{ray:?}: {hit:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn far_away_and_small() {
     let ball = Shape::sphere(0.01).unwrap();
     let pose = Pose::from_position(Vec3::new(0.0, 5000.0, 0.0));

@@ -139,6 +139,14 @@ impl BodyEntry {
             let fault = Fault::new("a half_space is never dynamic", "add kind = \"fixed\" to the body");
             return Err(fault).in_field("shape");
         }
+        if let ShapeEntry::Mesh(mesh) = &self.shape
+            && self.kind == KindEntry::Dynamic
+            && meshes[mesh].open
+        {
+            let fault =
+                Fault::new("an open mesh is never dynamic", "add kind = \"fixed\", or close the mesh");
+            return Err(fault).in_field("shape");
+        }
         range::vector(self.position, "position")?;
         if let Some(rotation) = self.rotation {
             rotation.to_quat().in_field("rotation")?;

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
-use forerun_dynamics::{BodyDef, Mass, Material};
-use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Sphere};
+use forerun_dynamics::{Body, BodyDef, BodyError, Mass, Material};
+use forerun_geometry::shape::ShapeError;
 use forerun_geometry::{Pose, Quat, Shape, Vec3};
 
 use crate::body::BodyEntry;
-use crate::error::{Fault, Within};
+use crate::error::{Fault, Step, Within};
 use crate::mesh::MeshEntry;
 use crate::rotation::RotationEntry;
 use crate::shape::{PartEntry, ShapeEntry};
@@ -19,7 +18,7 @@ const DENSITY: f32 = 1000.0;
 
 /// The definition of a body. `meshes` has the shape of every mesh by its name.
 pub(crate) fn build_body(entry: &BodyEntry, meshes: &BTreeMap<String, Shape>) -> Result<BodyDef, Fault> {
-    Ok(BodyDef {
+    let def = BodyDef {
         shape: build_shape(&entry.shape, meshes).in_field("shape")?,
         pose: pose(entry.position, entry.rotation)?,
         velocity: Vec3::from_array(entry.velocity),
@@ -30,7 +29,12 @@ pub(crate) fn build_body(entry: &BodyEntry, meshes: &BTreeMap<String, Shape>) ->
         gravity_scale: entry.gravity_scale.unwrap_or(1.0),
         force: Vec3::from_array(entry.force),
         torque: Vec3::from_array(entry.torque),
-    })
+    };
+    // The engine has the last word, here where the line of the body is still known.
+    Body::new(&def).map_err(|BodyError { field, message }| {
+        Fault::new(message, "change the body or its shape").under(Step::Field(field.to_owned()))
+    })?;
+    Ok(def)
 }
 
 /// A surface, with the defaults of a body for what is not given.
@@ -71,26 +75,33 @@ fn rotation(entry: Option<RotationEntry>) -> Result<Quat, Fault> {
 
 /// The shape of a mesh.
 pub(crate) fn build_mesh(entry: &MeshEntry, folder: &Path) -> Result<Shape, Fault> {
-    Ok(Shape::Mesh(Arc::new(entry.build(folder)?)))
+    Ok(entry.build(folder)?.into())
 }
 
 fn build_shape(entry: &ShapeEntry, meshes: &BTreeMap<String, Shape>) -> Result<Shape, Fault> {
-    Ok(match entry {
-        ShapeEntry::Sphere(s) => Shape::Sphere(Sphere { radius: s.radius }),
-        ShapeEntry::Box(b) => Shape::Cuboid(Cuboid { half_extents: Vec3::from_array(b.half_extents) }),
-        ShapeEntry::Capsule(c) => Shape::Capsule(Capsule { half_height: c.half_height, radius: c.radius }),
-        ShapeEntry::Cylinder(c) => Shape::Cylinder(Cylinder { half_height: c.half_height, radius: c.radius }),
-        ShapeEntry::Hull(hull) => { let _ = hull; return Err(Fault::new("hulls wait", "")) }
-        ShapeEntry::HalfSpace => Shape::HalfSpace,
+    let made = |shape: Result<Shape, ShapeError>, field| {
+        let fault = |error: ShapeError| Fault::new(error.message, "change the numbers of the shape");
+        shape.map_err(fault).in_field(field)
+    };
+    match entry {
+        ShapeEntry::Sphere(s) => made(Shape::sphere(s.radius), "sphere"),
+        ShapeEntry::Box(b) => made(Shape::cuboid(Vec3::from_array(b.half_extents)), "box"),
+        ShapeEntry::Capsule(c) => made(Shape::capsule(c.half_height, c.radius), "capsule"),
+        ShapeEntry::Cylinder(c) => made(Shape::cylinder(c.half_height, c.radius), "cylinder"),
+        ShapeEntry::Hull(hull) => {
+            let points: Vec<Vec3> = hull.points.iter().copied().map(Vec3::from_array).collect();
+            made(Shape::hull(&points), "hull")
+        }
+        ShapeEntry::HalfSpace => Ok(Shape::half_space()),
         ShapeEntry::Compound(parts) => {
             let parts: Result<Vec<_>, Fault> =
                 parts.iter().enumerate().map(|(i, part)| build_part(part, meshes).in_item(i)).collect();
-            Shape::Compound(Arc::new(Compound { parts: parts.in_field("compound")? }))
+            made(Shape::compound(parts.in_field("compound")?), "compound")
         }
         ShapeEntry::Mesh(name) => meshes.get(name).cloned().ok_or_else(|| {
             Fault::new(format!("there is no mesh \"{name}\""), format!("add [meshes.{name}]"))
-        })?,
-    })
+        }),
+    }
 }
 
 fn build_part(part: &PartEntry, meshes: &BTreeMap<String, Shape>) -> Result<(Pose, Shape), Fault> {

@@ -10,10 +10,10 @@ use crate::command_entry::{BodyRef, CommandEntry};
 use crate::error::{Fault, Within};
 use crate::scene::Scene;
 
-/// A command in values of the engine, with the frame at which it takes effect.
+/// A command in values of the engine, with its frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedCommand {
-    /// The first frame that is computed with it.
+    /// The frame whose state it changes. 1 or more: the state at frame 0 is what the bodies say.
     pub frame: u64,
     /// What happens.
     pub command: SceneCommand,
@@ -101,7 +101,6 @@ pub enum SceneCommand {
         gravity: Vec3,
     },
 }
-
 
 /// The bodies of a scene by number and name, and from which frame on they are there.
 pub(crate) struct Roster<'a> {

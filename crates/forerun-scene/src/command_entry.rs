@@ -16,10 +16,10 @@ use crate::rotation::RotationEntry;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CommandEntry {
-    /// The first frame that is computed with it.
+    /// The frame whose state it changes; the step that leaves the frame sees the change. 1 or more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<u64>,
-    /// The same as a time: the nearest frame is taken. Seconds, 0 or more.
+    /// The same as a time: the nearest frame is taken, and at least frame 1. Seconds, 0 or more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f32>,
     /// A new body comes in.
@@ -231,6 +231,10 @@ impl CommandEntry {
 
     fn check_when(&self) -> Result<(), Fault> {
         match (self.frame, self.seconds) {
+            (Some(0), None) => {
+                let remedy = "let the bodies say how it is at frame 0";
+                Err(Fault::new("must be 1 or more, is 0", remedy)).in_field("frame")
+            }
             (Some(_), None) => Ok(()),
             (None, Some(seconds)) => range::zero_or_more(seconds, "seconds"),
             (None, None) => {

@@ -96,7 +96,7 @@ impl Fault {
         Fault { path: FieldPath::default(), message: message.into(), remedy: remedy.into() }
     }
 
-    fn under(mut self, step: Step) -> Fault {
+    pub(crate) fn under(mut self, step: Step) -> Fault {
         self.path.0.insert(0, step);
         self
     }
@@ -133,6 +133,9 @@ mod tests {
             message: fault.message,
             remedy: fault.remedy,
         };
-        assert_eq!(error.to_string(), "a.toml:7:3: bodies[3].radius: must be above 0, is -1 (write a length)");
+        assert_eq!(
+            error.to_string(),
+            "a.toml:7:3: bodies[3].radius: must be above 0, is -1 (write a length)"
+        );
     }
 }

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use forerun_geometry::Vec3;
 use forerun_geometry::shape::Mesh;
+use forerun_geometry::shape::mesh_make::{ball, torus};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Fault, Within};
 use crate::{mesh_file, range};
 
-/// A mesh in a scene file: exactly one of `file`, `torus`, `torus_knot` and `sphere`.
+/// A mesh in a scene file: exactly one of `file`, `torus`, `torus_knot` and `ball`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshEntry {
@@ -24,10 +25,13 @@ pub struct MeshEntry {
     pub torus_knot: Option<TorusKnotEntry>,
     /// A ball made of triangles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sphere: Option<SphereMeshEntry>,
+    pub ball: Option<BallEntry>,
     /// Factor on all coordinates. Above 0, default 1.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub scale: f32,
+    /// Whether it may have holes and edges: a terrain. Such a mesh has no inside and is for fixed and kinematic bodies only. Default false.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub open: bool,
 }
 
 /// A torus about the y axis.
@@ -64,16 +68,14 @@ pub struct TorusKnotEntry {
     pub sides: u32,
 }
 
-/// A ball of triangles about the origin, poles on the y axis.
+/// A ball of triangles about the origin: an icosahedron whose edges are cut into parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SphereMeshEntry {
+pub struct BallEntry {
     /// Metres, above 0.
     pub radius: f32,
-    /// Points along each circle of latitude. 3 to 1024.
-    pub segments: u32,
-    /// Bands from pole to pole. 2 to 512.
-    pub rings: u32,
+    /// 1 to 128: the ball has 20 times as many triangles as this squared.
+    pub parts: u32,
 }
 
 fn one() -> f32 {
@@ -84,8 +86,13 @@ fn is_one(scale: &f32) -> bool {
     scale.to_bits() == 1.0_f32.to_bits()
 }
 
+fn is_false(open: &bool) -> bool {
+    !open
+}
+
 impl MeshEntry {
-    const NONE: MeshEntry = MeshEntry { file: None, torus: None, torus_knot: None, sphere: None, scale: 1.0 };
+    const NONE: MeshEntry =
+        MeshEntry { file: None, torus: None, torus_knot: None, ball: None, scale: 1.0, open: false };
 
     /// A ring.
     #[must_use]
@@ -101,18 +108,18 @@ impl MeshEntry {
 
     /// A ball of triangles.
     #[must_use]
-    pub fn sphere(sphere: SphereMeshEntry) -> MeshEntry {
-        MeshEntry { sphere: Some(sphere), ..MeshEntry::NONE }
+    pub fn ball(ball: BallEntry) -> MeshEntry {
+        MeshEntry { ball: Some(ball), ..MeshEntry::NONE }
     }
 
     /// Everything but whether the file can be read.
     pub(crate) fn check(&self) -> Result<(), Fault> {
         range::above_zero(self.scale, "scale")?;
         let given =
-            [self.file.is_some(), self.torus.is_some(), self.torus_knot.is_some(), self.sphere.is_some()];
+            [self.file.is_some(), self.torus.is_some(), self.torus_knot.is_some(), self.ball.is_some()];
         if given.iter().filter(|x| **x).count() != 1 {
             return Err(Fault::new(
-                "a mesh has exactly one of `file`, `torus`, `torus_knot` and `sphere`",
+                "a mesh has exactly one of `file`, `torus`, `torus_knot` and `ball`",
                 "for example torus = { radius = 0.5, tube_radius = 0.2, segments = 48, sides = 16 }",
             ));
         }
@@ -122,30 +129,45 @@ impl MeshEntry {
         if let Some(knot) = &self.torus_knot {
             knot.check().in_field("torus_knot")?;
         }
-        if let Some(sphere) = &self.sphere {
-            sphere.check().in_field("sphere")?;
+        if let Some(ball) = &self.ball {
+            range::above_zero(ball.radius, "radius").in_field("ball")?;
+            range::whole_between(ball.parts, (1, 128), "parts").in_field("ball")?;
         }
         Ok(())
     }
 
     /// The mesh itself. Reads a file if there is one to read.
     pub(crate) fn build(&self, folder: &Path) -> Result<Mesh, Fault> {
-        let mut mesh = if let Some(file) = &self.file {
-            mesh_file::read(&folder.join(file)).in_field("file")?
-        } else if let Some(torus) = &self.torus {
-            torus.build()
+        let scale = self.scale;
+        if let Some(file) = &self.file {
+            let triangles = mesh_file::read(&folder.join(file)).in_field("file")?;
+            self.scaled(triangles).in_field("file")
+        } else if let Some(t) = &self.torus {
+            torus(t.radius * scale, t.tube_radius * scale, t.segments, t.sides).map_err(not_possible)
         } else if let Some(knot) = &self.torus_knot {
-            knot.build()
-        } else if let Some(sphere) = &self.sphere {
-            sphere.build()
+            self.scaled(knot.build()).in_field("torus_knot")
+        } else if let Some(b) = &self.ball {
+            ball(b.radius * scale, b.parts).map_err(not_possible)
         } else {
-            return Err(Fault::new("a mesh needs a `file` or a formula", "add one"));
-        };
-        for vertex in &mut mesh.vertices {
-            *vertex *= self.scale;
+            Err(Fault::new("a mesh needs a `file` or a formula", "add one"))
         }
-        Ok(mesh)
     }
+
+    fn scaled(&self, triangles: Triangles) -> Result<Mesh, Fault> {
+        let vertices = triangles.vertices.into_iter().map(|v| v * self.scale).collect();
+        let make = if self.open { Mesh::open } else { Mesh::new };
+        make(vertices, triangles.triangles).map_err(not_possible)
+    }
+}
+
+/// Vertices (metres) and the corners of triangles, as they come.
+pub(crate) struct Triangles {
+    pub(crate) vertices: Vec<Vec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+fn not_possible(error: impl std::fmt::Display) -> Fault {
+    Fault::new(error.to_string(), "mend the mesh, or say open = true if it is a fixed terrain")
 }
 
 impl TorusEntry {
@@ -155,17 +177,6 @@ impl TorusEntry {
         larger(self.radius, "radius", self.tube_radius, "tube_radius")?;
         range::whole_between(self.segments, (3, 1024), "segments")?;
         range::whole_between(self.sides, (3, 256), "sides")
-    }
-
-    fn build(&self) -> Mesh {
-        let ring: Vec<Section> = (0..self.segments)
-            .map(|i| {
-                let (sin, cos) = turn(i, self.segments);
-                let outward = Vec3::new(cos, 0.0, sin);
-                Section { centre: outward * self.radius, normal: outward, binormal: Vec3::Y }
-            })
-            .collect();
-        tube(&ring, self.tube_radius, self.sides)
     }
 }
 
@@ -222,7 +233,7 @@ impl TorusKnotEntry {
         Vec3::new(out * cos_p, self.winding_radius * sin_q, out * sin_p)
     }
 
-    fn build(&self) -> Mesh {
+    fn build(&self) -> Triangles {
         let n = self.segments;
         let sections: Vec<Section> = (0..n)
             .map(|i| {
@@ -239,39 +250,6 @@ impl TorusKnotEntry {
     }
 }
 
-impl SphereMeshEntry {
-    fn check(&self) -> Result<(), Fault> {
-        range::above_zero(self.radius, "radius")?;
-        range::whole_between(self.segments, (3, 1024), "segments")?;
-        range::whole_between(self.rings, (2, 512), "rings")
-    }
-
-    fn build(&self) -> Mesh {
-        let mut vertices = vec![Vec3::Y * self.radius];
-        for ring in 1..self.rings {
-            let (sin, cos) = turn(ring, 2 * self.rings);
-            for i in 0..self.segments {
-                let (s, c) = turn(i, self.segments);
-                vertices.push(Vec3::new(sin * c, cos, sin * s) * self.radius);
-            }
-        }
-        let south = vertices.len() as u32;
-        vertices.push(Vec3::Y * -self.radius);
-        let n = self.segments;
-        let at = |ring: u32, i: u32| 1 + ring * n + i % n;
-        let mut triangles = Vec::new();
-        for i in 0..n {
-            triangles.push([0, at(0, i + 1), at(0, i)]);
-            for ring in 0..self.rings - 2 {
-                triangles.push([at(ring, i), at(ring, i + 1), at(ring + 1, i)]);
-                triangles.push([at(ring + 1, i), at(ring, i + 1), at(ring + 1, i + 1)]);
-            }
-            triangles.push([south, at(self.rings - 2, i), at(self.rings - 2, i + 1)]);
-        }
-        Mesh { vertices, triangles }
-    }
-}
-
 /// A cut through a tube: normal, binormal and the direction of the tube are a right-handed set of unit vectors.
 struct Section {
     centre: Vec3,
@@ -280,7 +258,7 @@ struct Section {
 }
 
 /// The closed tube round a ring of sections, wound counter-clockwise seen from outside.
-fn tube(sections: &[Section], radius: f32, sides: u32) -> Mesh {
+fn tube(sections: &[Section], radius: f32, sides: u32) -> Triangles {
     let count = sections.len() as u32;
     let mut vertices = Vec::with_capacity(sections.len() * sides as usize);
     for section in sections {
@@ -297,7 +275,7 @@ fn tube(sections: &[Section], radius: f32, sides: u32) -> Mesh {
             triangles.push([at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]);
         }
     }
-    Mesh { vertices, triangles }
+    Triangles { vertices, triangles }
 }
 
 /// Sine and cosine of `part / whole` of a full turn.
@@ -320,39 +298,14 @@ fn larger(value: f32, field: &str, other: f32, other_field: &str) -> Result<(), 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeMap;
 
     fn volume(mesh: &Mesh) -> f32 {
-        let v = |i: u32| mesh.vertices[i as usize];
-        mesh.triangles.iter().map(|t| v(t[0]).dot(v(t[1]).cross(v(t[2]))) / 6.0).sum()
-    }
-
-    /// Every directed edge once, and its reverse once: closed, and wound one way.
-    fn assert_closed(mesh: &Mesh) {
-        let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
-        for t in &mesh.triangles {
-            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-                *edges.entry((a, b)).or_default() += 1;
-            }
-        }
-        assert!(edges.iter().all(|(&(a, b), &n)| n == 1 && edges.get(&(b, a)) == Some(&1)));
-    }
-
-    #[test]
-    fn a_torus_is_closed_and_has_the_volume_of_the_formula() {
-        let mesh = TorusEntry { radius: 0.5, tube_radius: 0.2, segments: 96, sides: 48 }.build();
-        assert_closed(&mesh);
-        let exact = 2.0 * std::f32::consts::PI * std::f32::consts::PI * 0.5 * 0.2 * 0.2;
-        let ratio = volume(&mesh) / exact;
-        assert!((0.98..1.0).contains(&ratio), "{ratio}");
-    }
-
-    #[test]
-    fn a_ball_is_closed_and_has_the_volume_of_the_formula() {
-        let mesh = SphereMeshEntry { radius: 2.0, segments: 96, rings: 48 }.build();
-        assert_closed(&mesh);
-        let ratio = volume(&mesh) / (4.0 / 3.0 * std::f32::consts::PI * 8.0);
-        assert!((0.98..1.0).contains(&ratio), "{ratio}");
+        (0..mesh.triangles.len())
+            .map(|i| {
+                let [a, b, c] = mesh.corners(i);
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum()
     }
 
     #[test]
@@ -367,9 +320,10 @@ mod tests {
             sides: 32,
         };
         knot.check().unwrap();
-        let mesh = knot.build();
-        assert_closed(&mesh);
-        let length: f32 = (0..1000).map(|i| knot.point(i, 1000).distance(knot.point((i + 1) % 1000, 1000))).sum();
+        let mesh = MeshEntry::torus_knot(knot).build(Path::new("")).unwrap();
+        assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+        let length: f32 =
+            (0..1000).map(|i| knot.point(i, 1000).distance(knot.point((i + 1) % 1000, 1000))).sum();
         // Pappus: section times the length of the middle line.
         let ratio = volume(&mesh) / (length * std::f32::consts::PI * 0.01);
         assert!((0.97..1.0).contains(&ratio), "{ratio}");

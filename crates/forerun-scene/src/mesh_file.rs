@@ -5,14 +5,14 @@ use std::io::BufReader;
 use std::path::Path;
 
 use forerun_geometry::Vec3;
-use forerun_geometry::shape::Mesh;
 
 use crate::error::Fault;
+use crate::mesh::Triangles;
 
 /// Reads a mesh file. All objects of an OBJ file become one mesh; equal corners of STL triangles become one vertex.
-pub(crate) fn read(path: &Path) -> Result<Mesh, Fault> {
+pub(crate) fn read(path: &Path) -> Result<Triangles, Fault> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let reader: fn(File) -> Result<Mesh, String> = match extension.as_str() {
+    let reader: fn(File) -> Result<Triangles, String> = match extension.as_str() {
         "obj" => read_obj,
         "stl" => read_stl,
         _ => {
@@ -49,13 +49,13 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, Fault> {
     Ok(mesh)
 }
 
-fn read_obj(file: File) -> Result<Mesh, String> {
+fn read_obj(file: File) -> Result<Triangles, String> {
     let options = tobj::LoadOptions { triangulate: true, ..tobj::LoadOptions::default() };
     // Materials say how a mesh looks, not what it is: they are not read.
     let (models, _) =
         tobj::load_obj_buf(&mut BufReader::new(file), &options, |_| Err(tobj::LoadError::GenericFailure))
             .map_err(|error| error.to_string())?;
-    let mut mesh = Mesh { vertices: Vec::new(), triangles: Vec::new() };
+    let mut mesh = Triangles { vertices: Vec::new(), triangles: Vec::new() };
     for model in models {
         let first = mesh.vertices.len() as u32;
         mesh.vertices.extend(model.mesh.positions.chunks_exact(3).map(Vec3::from_slice));
@@ -65,9 +65,9 @@ fn read_obj(file: File) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-fn read_stl(file: File) -> Result<Mesh, String> {
+fn read_stl(file: File) -> Result<Triangles, String> {
     let stl = stl_io::read_stl(&mut BufReader::new(file)).map_err(|error| error.to_string())?;
-    Ok(Mesh {
+    Ok(Triangles {
         vertices: stl.vertices.iter().map(|v| Vec3::new(v[0], v[1], v[2])).collect(),
         triangles: stl.faces.iter().map(|face| face.vertices.map(|i| i as u32)).collect(),
     })

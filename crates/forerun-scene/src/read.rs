@@ -71,7 +71,8 @@ fn data_error(
 }
 
 fn remedy(path: &FieldPath, message: &str) -> String {
-    if let Some(wrong) = message.strip_prefix("unknown field `").or(message.strip_prefix("unknown variant `")) {
+    if let Some(wrong) = message.strip_prefix("unknown field `").or(message.strip_prefix("unknown variant `"))
+    {
         let mut quoted = wrong.split('`');
         let wrong = quoted.next().unwrap_or_default();
         let allowed: Vec<&str> = quoted.skip(1).step_by(2).collect();

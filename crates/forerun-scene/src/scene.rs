@@ -186,9 +186,8 @@ impl Scene {
         let adds = self.commands.iter().any(|command| command.add.is_some());
         let meshes = if adds { self.build_meshes()? } else { BTreeMap::new() };
         let mut added = 0;
-        let build = |(i, command)| {
-            roster.build(command, (self, &meshes), &mut added).in_item(i).in_field("commands")
-        };
+        let build =
+            |(i, command)| roster.build(command, (self, &meshes), &mut added).in_item(i).in_field("commands");
         self.commands.iter().enumerate().map(build).collect()
     }
 
@@ -235,9 +234,10 @@ impl Scene {
 }
 
 impl CommandEntry {
-    /// The frame of a command; 0 when it has neither frame nor time, which the check refuses.
+    /// The frame of a command; 1 when it has neither frame nor time, which the check refuses.
     pub(crate) fn frame_in(&self, scene: &Scene) -> u64 {
-        self.frame.or(self.seconds.map(|seconds| scene.frame_at(seconds))).unwrap_or(0)
+        let given = self.frame.or(self.seconds.map(|seconds| scene.frame_at(seconds)));
+        given.unwrap_or_default().max(1)
     }
 }
 

@@ -35,9 +35,12 @@ pub struct SettingsEntry {
     /// m/s, 0 or more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_speed: Option<f32>,
-    /// Frames; 0 switches rest off.
+    /// Seconds; 0 switches rest off.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rest_frames: Option<u32>,
+    pub rest_seconds: Option<f32>,
+    /// Metres, 0 or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_overlap_m: Option<f32>,
     /// A power of two from 1 to 64.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slices_max: Option<u32>,
@@ -73,8 +76,9 @@ impl SettingsEntry {
             recovery_speed_max: self.recovery_speed_max.unwrap_or(settings.recovery_speed_max),
             shock_yield: self.shock_yield.unwrap_or(settings.shock_yield),
             rest_speed: self.rest_speed.unwrap_or(settings.rest_speed),
-            rest_frames: self.rest_frames.unwrap_or(settings.rest_frames),
+            rest_seconds: self.rest_seconds.unwrap_or(settings.rest_seconds),
             slices_max: self.slices_max.unwrap_or(settings.slices_max),
+            rest_overlap_m: self.rest_overlap_m.unwrap_or(settings.rest_overlap_m),
             ..settings
         }
     }

@@ -123,7 +123,8 @@ fn check_points(points: &[[f32; 3]]) -> Result<(), Fault> {
     for (i, point) in points.iter().enumerate() {
         for (axis, x) in point.iter().enumerate() {
             if !x.is_finite() {
-                let fault = Fault::new(format!("must be a finite number, is {x}"), "write a length in metres");
+                let fault =
+                    Fault::new(format!("must be a finite number, is {x}"), "write a length in metres");
                 return Err(fault).in_item(axis).in_item(i);
             }
         }

@@ -87,7 +87,8 @@ impl Writer {
         self.optional("recovery_speed_max", &s.recovery_speed_max);
         self.optional("shock_yield", &s.shock_yield);
         self.optional("rest_speed", &s.rest_speed);
-        self.optional("rest_frames", &s.rest_frames);
+        self.optional("rest_seconds", &s.rest_seconds);
+        self.optional("rest_overlap_m", &s.rest_overlap_m);
         self.optional("slices_max", &s.slices_max);
     }
 
@@ -95,8 +96,9 @@ impl Writer {
         self.optional("file", &mesh.file);
         self.optional("torus", &mesh.torus);
         self.optional("torus_knot", &mesh.torus_knot);
-        self.optional("sphere", &mesh.sphere);
+        self.optional("ball", &mesh.ball);
         self.field_unless(mesh.scale.to_bits() == 1.0_f32.to_bits(), "scale", &mesh.scale);
+        self.field_unless(!mesh.open, "open", &mesh.open);
     }
 
     fn body(&mut self, body: &BodyEntry) {

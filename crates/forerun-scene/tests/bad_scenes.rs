@@ -40,7 +40,13 @@ fn assert_reports(bad: &Bad, text: &str, format: Format) {
 const TOML: &[Bad] = &[
     Bad { what: "syntax", text: "[[bodies]]\nshape = = 3\n", line: 3, field: "", says: &["bad.toml:3:9"] },
     Bad { what: "unclosed table", text: "[settings\n", line: 2, field: "", says: &["]"] },
-    Bad { what: "key given twice", text: "seconds = 1\nseconds = 2\n", line: 3, field: "", says: &["duplicate"] },
+    Bad {
+        what: "key given twice",
+        text: "seconds = 1\nseconds = 2\n",
+        line: 3,
+        field: "",
+        says: &["duplicate"],
+    },
     Bad {
         what: "unknown field of the scene",
         text: "gravty = [0, -9.81, 0]\n",
@@ -124,6 +130,27 @@ const TOML: &[Bad] = &[
         line: 3,
         field: "bodies[0].shape.hull.points",
         says: &["4 points or more, this has 3"],
+    },
+    Bad {
+        what: "hull in a plane",
+        text: "[[bodies]]\nshape = { hull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] } }\n",
+        line: 3,
+        field: "bodies[0].shape.hull",
+        says: &["plane"],
+    },
+    Bad {
+        what: "body too heavy for a float",
+        text: "[[bodies]]\n\nshape = { sphere = { radius = 1e13 } }\n",
+        line: 4,
+        field: "bodies[0].shape",
+        says: &["mass", "inf"],
+    },
+    Bad {
+        what: "open mesh that moves",
+        text: "[meshes.m]\nopen = true\nfile = 'm.obj'\n[[bodies]]\nshape = { mesh = 'm' }\n",
+        line: 6,
+        field: "bodies[0].shape",
+        says: &["open mesh", "kind = \"fixed\""],
     },
     Bad {
         what: "compound of a mesh",
@@ -239,7 +266,7 @@ const TOML: &[Bad] = &[
     },
     Bad {
         what: "mesh of two formulas",
-        text: "[meshes.mug]\nfile = \"mug.obj\"\nsphere = { radius = 1, segments = 9, rings = 9 }\n",
+        text: "[meshes.mug]\nfile = \"mug.obj\"\nball = { radius = 1, parts = 3 }\n",
         line: 2,
         field: "meshes.mug",
         says: &["exactly one"],
@@ -313,6 +340,13 @@ const TOML: &[Bad] = &[
         line: 4,
         field: "commands[0].frame",
         says: &["-1"],
+    },
+    Bad {
+        what: "command at the start",
+        text: "[[commands]]\nset_gravity = [0, 0, 0]\nframe = 0\n",
+        line: 4,
+        field: "commands[0].frame",
+        says: &["1 or more, is 0"],
     },
     Bad {
         what: "command to nobody",

@@ -72,7 +72,7 @@ overlap_recovery = 0.25
 recovery_speed_max = 1.5
 shock_yield = 0.75
 rest_speed = 0.01
-rest_frames = 0
+rest_seconds = 0.0
 slices_max = 16
 
 [meshes."a ring"]
@@ -81,7 +81,8 @@ scale = 2.0
 [meshes.knot]
 torus_knot = { p = 2, q = 3, radius = 0.5, winding_radius = 0.2, tube_radius = 0.1, segments = 64, sides = 6 }
 [meshes.ball]
-sphere = { radius = 1.0, segments = 8, rings = 4 }
+ball = { radius = 1.0, parts = 2 }
+open = true
 
 [[bodies]]
 name = "ground"
@@ -252,6 +253,6 @@ fn mesh_files_are_found_beside_the_scene_in_obj_and_stl() {
     std::fs::remove_dir_all(&folder).unwrap();
     for body in &bodies {
         let forerun_geometry::Shape::Mesh(mesh) = &body.shape else { panic!("a mesh") };
-        assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (4, 4));
+        assert_eq!((mesh.vertices.len(), mesh.triangles.len(), mesh.closed), (4, 4, true));
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use forerun_dynamics::{BodyId, bounds};
+use forerun_geometry::{Aabb, Vec3};
 
 use crate::areas::Area;
 use crate::{Frame, Timeline};
@@ -14,7 +15,7 @@ impl Timeline {
     pub fn area_clocks(&self) -> Vec<(Area, Frame)> {
         let mut clocks: BTreeMap<Area, Frame> = BTreeMap::new();
         for (body, frame) in self.doubtful() {
-            for area in self.areas_of(body, frame) {
+            for area in self.bound(body, frame).into_iter().flat_map(|bound| self.areas.covered(&bound)) {
                 let clock = clocks.entry(area).or_insert(frame);
                 *clock = frame.min(*clock);
             }
@@ -22,30 +23,36 @@ impl Timeline {
         clocks.into_iter().collect()
     }
 
-    /// How many areas are active at a stored frame: a body that moves is in them. 0 when the frame is not stored.
+    /// How many areas are active at a stored frame: a body that moved to where it is since the frame before is in them. 0 when the
+    /// frame is not stored. Bodies over a great many areas are left out.
     #[must_use]
     pub fn areas_active(&self, frame: Frame) -> u32 {
         if frame < self.oldest() || frame > self.horizon() {
             return 0;
         }
-        let table = self.table(frame);
-        let moving: Vec<BodyId> = if frame == self.oldest() {
-            let moves = |v: forerun_geometry::Vec3| v != forerun_geometry::Vec3::ZERO;
-            let bodies = table.iter().filter(|(_, s)| moves(s.velocity) || moves(s.angular_velocity));
-            bodies.map(|(body, _)| body).collect()
-        } else {
-            table.differences(self.table(frame.minus(1)))
-        };
-        let mut areas: Vec<Area> = moving.iter().flat_map(|body| self.areas_of(*body, frame)).collect();
-        areas.sort_unstable();
-        areas.dedup();
-        areas.len() as u32
+        let mut moving = vec![false; self.names()];
+        for body in self.moving(frame) {
+            moving[body.0 as usize] = true;
+        }
+        self.areas.count(frame, |body, area| {
+            moving[body.0 as usize]
+                && self.bound(body, frame).is_some_and(|bound| self.areas.covers(&bound, area))
+        })
     }
 
-    fn areas_of(&self, id: BodyId, frame: Frame) -> impl Iterator<Item = Area> {
-        let environment = self.environment_at(frame);
-        let bound = self.body_at(id, frame).zip(self.state(id, frame));
-        let bound = bound.map(|(body, state)| bounds::swept_bound(body, state, &environment));
-        bound.into_iter().flat_map(|bound| self.areas.covered(&bound))
+    /// The bodies whose state is not that of the frame before; at the oldest frame, that have a velocity.
+    fn moving(&self, frame: Frame) -> Vec<BodyId> {
+        let table = self.table(frame);
+        if frame > self.oldest() {
+            return table.differences(self.table(frame.minus(1)));
+        }
+        let moves = |v: Vec3| v != Vec3::ZERO;
+        let moving = table.iter().filter(|(_, s)| moves(s.velocity) || moves(s.angular_velocity));
+        moving.map(|(body, _)| body).collect()
+    }
+
+    fn bound(&self, id: BodyId, frame: Frame) -> Option<Aabb> {
+        let (body, state) = self.body_at(id, frame).zip(self.state(id, frame))?;
+        Some(bounds::swept_bound(body, state, &self.environment_at(frame)))
     }
 }

@@ -206,17 +206,17 @@ impl<'a> Search<'a, '_> {
         }
     }
 
-    /// Meets everybody near the given bounds (or just everybody, where that is as cheap); their indices, sorted by id.
-    fn meet_near(&mut self, bounds: &[Aabb]) -> Vec<u32> {
+    /// Meets everybody near the given bounds (or just everybody, where that is as cheap) and the bodies themselves that `ids` starts
+    /// with; their indices, sorted by id.
+    fn meet_near(&mut self, bounds: &[Aabb], mut ids: Vec<BodyId>) -> Vec<u32> {
         let others = self.inputs.table.population().saturating_sub(self.met.len());
-        let mut ids = Vec::new();
-        let listed = others > bounds.len()
-            && bounds.iter().all(|bound| self.inputs.areas.near(self.inputs.frame, bound, &mut ids));
-        if !listed {
+        let listed = others > bounds.len() && self.inputs.areas.near(self.inputs.frame, bounds, &mut ids);
+        if listed {
+            ids.sort_unstable();
+            ids.dedup();
+        } else {
             ids = self.inputs.table.iter().map(|(id, _)| id).collect();
         }
-        ids.sort_unstable();
-        ids.dedup();
         ids.into_iter().filter_map(|id| self.meet(id)).collect()
     }
 
@@ -224,53 +224,52 @@ impl<'a> Search<'a, '_> {
     /// bodies is in the frontier.
     fn look_around(&mut self, frontier: &[u32], next: &mut Vec<u32>) {
         let reach: Vec<Aabb> = frontier.iter().map(|index| self.met[*index as usize].bound).collect();
-        let mut around = self.meet_near(&reach);
-        let mut in_frontier = vec![false; self.met.len()];
-        for index in frontier {
-            in_frontier[*index as usize] = true;
-        }
-        around.extend(frontier);
-        around.sort_unstable_by_key(|index| self.met[*index as usize].member.id);
-        around.dedup();
+        let ids = frontier.iter().map(|index| self.met[*index as usize].member.id).collect();
+        let mut around = self.meet_near(&reach, ids);
         around.retain(|index| !self.met[*index as usize].looked);
-
-        let bounds: Vec<Bound> = around.iter().map(|index| self.met[*index as usize].bound()).collect();
-        let members: Vec<Member> = around.iter().map(|index| self.met[*index as usize].member).collect();
-        let mut pairs = overlapping_pairs(&bounds);
-        let is_in_frontier = |local: u32| in_frontier[around[local as usize] as usize];
-        pairs.retain(|(a, b)| is_in_frontier(*a) || is_in_frontier(*b));
-        let contacts = find_contacts(&members, &pairs, &self.environment);
-
-        let met_of = |local: u32| around[local as usize];
-        for (a, b) in pairs {
-            let (a, b) = (met_of(a), met_of(b));
-            self.pairs.push((a, b));
-            if in_frontier[a as usize] {
-                self.join_by_reach(a, b, next);
-            }
-            if in_frontier[b as usize] {
-                self.join_by_reach(b, a, next);
-            }
-        }
-        for contact in contacts {
-            let (first, second) = (met_of(contact.first), met_of(contact.second));
-            self.contacts.push(Contact { first, second, ..contact });
-            if self.met[first as usize].is_dynamic() && self.met[second as usize].is_dynamic() {
-                self.join_met(first, next);
-                self.join_met(second, next);
-            }
-        }
         for index in frontier {
             self.met[*index as usize].looked = true;
         }
+        let around: Vec<(u32, Met)> =
+            around.iter().map(|index| (*index, self.met[*index as usize])).collect();
+
+        let bounds: Vec<Bound> = around.iter().map(|(_, met)| met.bound()).collect();
+        let members: Vec<Member> = around.iter().map(|(_, met)| met.member).collect();
+        let mut pairs = overlapping_pairs(&bounds);
+        // Those that were looked at before are not around: who is looked at is in the frontier.
+        let in_frontier: Vec<bool> = around.iter().map(|(_, met)| met.looked).collect();
+        pairs.retain(|(a, b)| in_frontier[*a as usize] || in_frontier[*b as usize]);
+        let mut contacts = find_contacts(&members, &pairs, &self.environment);
+
+        let met_of = |local: u32| around[local as usize].0;
+        for (a, b) in &mut pairs {
+            let ends = (*a as usize, *b as usize);
+            (*a, *b) = (met_of(*a), met_of(*b));
+            if bounds[ends.0].dynamic != bounds[ends.1].dynamic {
+                let (moved, other) = if bounds[ends.0].dynamic { (*a, *b) } else { (*b, *a) };
+                self.reach(moved, other, next);
+            }
+        }
+        for contact in &mut contacts {
+            let ends = (contact.first as usize, contact.second as usize);
+            (contact.first, contact.second) = (met_of(contact.first), met_of(contact.second));
+            if bounds[ends.0].dynamic && bounds[ends.1].dynamic && in_frontier[ends.0] != in_frontier[ends.1]
+            {
+                self.join_met(contact.first, next);
+                self.join_met(contact.second, next);
+            }
+        }
+        keep(&mut self.pairs, pairs);
+        keep(&mut self.contacts, contacts);
     }
 
-    /// The bounds of a due body and another overlap: what follows for the other.
-    fn join_by_reach(&mut self, due: u32, other: u32, next: &mut Vec<u32>) {
-        if !self.met[other as usize].is_dynamic() {
+    /// The bounds of a dynamic body and one that is not overlap, and at least one of them is due: what follows for the other.
+    fn reach(&mut self, dynamic: u32, other: u32, next: &mut Vec<u32>) {
+        if self.met[dynamic as usize].due {
             self.met[other as usize].in_reach = true;
-        } else if !self.met[due as usize].is_dynamic() {
-            self.join_met(other, next);
+        }
+        if self.met[other as usize].due {
+            self.join_met(dynamic, next);
         }
     }
 
@@ -283,7 +282,7 @@ impl<'a> Search<'a, '_> {
         }
         let mut list: Vec<Met> = out_of_date.iter().filter_map(|id| self.old_inputs(*id)).collect();
         let reach: Vec<Aabb> = list.iter().map(|old| old.bound).collect();
-        for index in self.meet_near(&reach) {
+        for index in self.meet_near(&reach, Vec::new()) {
             let met = self.met[index as usize];
             if met.is_dynamic() && !met.due {
                 list.push(met);
@@ -327,7 +326,8 @@ impl<'a> Search<'a, '_> {
         let is_member = |met: &Met| met.due || met.in_reach;
         let mut order: Vec<u32> =
             (0..self.met.len() as u32).filter(|i| is_member(&self.met[*i as usize])).collect();
-        order.sort_unstable_by_key(|index| self.met[*index as usize].member.id);
+        // Stable sorts: what is in order already, as mostly, costs one look.
+        order.sort_by_key(|index| self.met[*index as usize].member.id);
         let mut place = vec![u32::MAX; self.met.len()];
         for (member, index) in order.iter().enumerate() {
             place[*index as usize] = member as u32;
@@ -337,12 +337,12 @@ impl<'a> Search<'a, '_> {
             (*a, *b) = (placed(*a), placed(*b));
             *a != u32::MAX && *b != u32::MAX
         });
-        self.pairs.sort_unstable();
+        self.pairs.sort();
         self.contacts.retain_mut(|contact| {
             (contact.first, contact.second) = (placed(contact.first), placed(contact.second));
             contact.first != u32::MAX && contact.second != u32::MAX
         });
-        // Stable: several manifolds of a pair stay in their order.
+        // Several manifolds of a pair stay in their order.
         self.contacts.sort_by_key(|contact| (contact.first, contact.second));
         for met in &self.met {
             self.scratch.met_index[met.member.id.0 as usize] = 0;
@@ -353,5 +353,14 @@ impl<'a> Search<'a, '_> {
             pairs: self.pairs,
             contacts: self.contacts,
         }
+    }
+}
+
+/// Adds to what is kept; mostly there is only one round, and then nothing is moved.
+fn keep<T>(kept: &mut Vec<T>, mut found: Vec<T>) {
+    if kept.is_empty() {
+        *kept = found;
+    } else {
+        kept.append(&mut found);
     }
 }

@@ -2,7 +2,7 @@
 //! (dissertation, section 3.2 and the grid of chapter 4).
 //!
 //! Promise: [`Areas::near`] names every body whose bound at that frame, as last told by [`Areas::visit`], shares an area with the
-//! asked bound. It may name more: whoever asks compares bounds.
+//! asked bounds. It may name more: whoever asks compares bounds.
 
 use std::collections::BTreeMap;
 
@@ -96,18 +96,38 @@ impl Areas {
         }
     }
 
-    /// Adds to `found` the bodies that may have a bound near this one at a frame, in no order and perhaps twice. `false` when the
+    /// Adds to `found` the bodies that may have a bound near one of these at a frame, in no order and perhaps twice. `false` when a
     /// bound covers so much that everybody has to be asked.
-    pub(crate) fn near(&self, frame: Frame, bound: &Aabb, found: &mut Vec<BodyId>) -> bool {
-        let Cover::Areas { min, max } = self.cover(bound) else { return false };
+    pub(crate) fn near(&self, frame: Frame, bounds: &[Aabb], found: &mut Vec<BodyId>) -> bool {
+        let mut areas: Vec<Area> = Vec::with_capacity(4 * bounds.len());
+        for bound in bounds {
+            let Cover::Areas { min, max } = self.cover(bound) else { return false };
+            areas.extend(areas_between(min, max));
+        }
+        // Neighbours share areas, and an area has many visitors: each is asked once.
+        areas.sort_unstable();
+        areas.dedup();
         let here = |v: &&Visit| v.enters <= frame && frame < v.leaves;
-        for area in areas_between(min, max) {
-            if let Some(list) = self.visits.get(&area) {
-                found.extend(list.iter().filter(here).map(|v| v.body));
-            }
+        for list in areas.iter().filter_map(|area| self.visits.get(area)) {
+            found.extend(list.iter().filter(here).map(|v| v.body));
         }
         found.extend(self.large.iter().filter(here).map(|v| v.body));
         true
+    }
+
+    /// How many areas have a visitor at a frame for which `counts` holds; it is asked until it does.
+    pub(crate) fn count(&self, frame: Frame, counts: impl Fn(BodyId, &Area) -> bool) -> u32 {
+        let here = |v: &&Visit| v.enters <= frame && frame < v.leaves;
+        let areas = self.visits.iter();
+        areas.filter(|(area, list)| list.iter().filter(here).any(|v| counts(v.body, area))).count() as u32
+    }
+
+    /// Whether a bound covers an area, and not too many others to list.
+    pub(crate) fn covers(&self, bound: &Aabb, area: &Area) -> bool {
+        match self.cover(bound) {
+            Cover::Areas { min, max } => (0..3).all(|axis| (min[axis]..=max[axis]).contains(&area[axis])),
+            Cover::Large => false,
+        }
     }
 
     /// The areas that a bound covers; none when they are too many to list.
@@ -193,7 +213,7 @@ mod tests {
 
     fn near(areas: &Areas, frame: u64, x: f32) -> Vec<u32> {
         let mut found = Vec::new();
-        assert!(areas.near(Frame(frame), &ball(x), &mut found));
+        assert!(areas.near(Frame(frame), &[ball(x)], &mut found));
         let mut ids: Vec<u32> = found.into_iter().map(|b| b.0).collect();
         ids.sort_unstable();
         ids.dedup();
@@ -223,7 +243,7 @@ mod tests {
             Aabb { min: Vec3::splat(f32::NEG_INFINITY), max: Vec3::new(f32::INFINITY, 0.0, f32::INFINITY) };
         areas.visit(BodyId(0), Frame(0), Some(&ground), Until::FurtherNotice);
         assert_eq!(near(&areas, 3, 1e30), [0]);
-        assert!(!areas.near(Frame(3), &ground, &mut Vec::new()));
+        assert!(!areas.near(Frame(3), &[ball(0.0), ground], &mut Vec::new()));
         areas.visit(BodyId(0), Frame(5), None, Until::FurtherNotice);
         assert_eq!(near(&areas, 5, 1e30), [0; 0]);
     }

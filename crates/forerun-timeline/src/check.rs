@@ -201,6 +201,24 @@ pub fn mismatches(timeline: &Timeline, reference: &Timeline) -> (u64, Option<Mis
     (count, first)
 }
 
+impl Timeline {
+    /// Does the step that leaves a frame once more, for all bodies together, and compares it with what is stored: the first body that
+    /// differs. `None` when none does, or when the next frame is not known to be true.
+    #[must_use]
+    pub fn audit(&self, frame: Frame) -> Option<Mismatch> {
+        if frame < self.oldest() || frame >= self.valid_to() {
+            return None;
+        }
+        let mut again = self.clone();
+        again.stale.entry(frame).or_default().everyone = true;
+        let _ = again.advance();
+        let next = frame.next();
+        let body = *self.table(next).differences(again.table(next)).first()?;
+        let (found, expected) = (self.state(body, next), again.state(body, next));
+        Some(Mismatch { frame: next, body, found: found.copied(), expected: expected.copied() })
+    }
+}
+
 fn run(timeline: &mut Timeline) {
     while timeline.advance() != Progress::Idle {}
 }

@@ -27,6 +27,15 @@ impl CommandLog {
         self.by_key.insert(key, change);
     }
 
+    /// Takes a command back; what it was.
+    pub(crate) fn remove(&mut self, key: &CommandKey) -> Option<Change> {
+        let change = self.by_key.remove(key)?;
+        if let Some(body) = change.body() {
+            self.by_body.remove(&(body, *key));
+        }
+        Some(change)
+    }
+
     /// The commands of a frame in the order in which they act.
     pub(crate) fn at(&self, frame: Frame) -> impl Iterator<Item = &Change> {
         self.by_key.range(first_key(frame)..=last_key(frame)).map(|(_, change)| change)

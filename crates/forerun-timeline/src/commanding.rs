@@ -64,6 +64,7 @@ impl Arrival<'_> {
             self.wake_everyone(&mut entries);
         }
         let commanded = self.log.bodies_at(self.frame);
+        effects.retain(|body, _| commanded.contains(body));
         if commanded.is_empty() {
             return entries;
         }
@@ -120,7 +121,7 @@ impl Arrival<'_> {
         for effect in effects.values_mut().filter(|effect| effect.obeyed) {
             let bounds: Vec<Aabb> = effect.before.into_iter().chain(effect.after).collect();
             let mut near = Vec::new();
-            if !bounds.iter().all(|bound| areas.near(self.frame, bound, &mut near)) {
+            if !areas.near(self.frame, &bounds, &mut near) {
                 near = (0..self.definitions.names() as u32).map(BodyId).collect();
             }
             near.sort_unstable();

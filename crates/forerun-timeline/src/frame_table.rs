@@ -113,14 +113,15 @@ impl FrameTable {
         entries: &[Entry],
         before: &Arc<FrameTable>,
     ) -> (Arc<FrameTable>, Vec<BodyId>) {
-        let changes = || entries.iter().filter(|(body, state)| !same_entry(self.get(*body), state.as_ref()));
-        let changed: Vec<BodyId> = changes().map(|(body, _)| *body).collect();
+        let differs = |(body, state): &&Entry| !same_entry(self.get(*body), state.as_ref());
+        let changes: Vec<&Entry> = entries.iter().filter(differs).collect();
+        let changed: Vec<BodyId> = changes.iter().map(|(body, _)| *body).collect();
         if changed.is_empty() {
             return (Arc::clone(self), changed);
         }
         let mut table = FrameTable::clone(self);
         let mut written = Vec::new();
-        for (body, state) in changes() {
+        for (body, state) in changes {
             let (index, slot) = place(*body);
             while table.blocks.len() <= index {
                 table.blocks.push(Arc::new(Block::EMPTY));

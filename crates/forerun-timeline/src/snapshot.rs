@@ -137,9 +137,11 @@ impl Snapshot {
         let frame = moment.frame.min(self.horizon());
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
-        bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
-        bodies.sort_unstable();
-        bodies.dedup();
+        if !self.doubtful.is_empty() {
+            bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
+            bodies.sort_unstable();
+            bodies.dedup();
+        }
         samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
     }
 

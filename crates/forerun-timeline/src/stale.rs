@@ -48,8 +48,7 @@ impl Stale {
         stored: &Arc<FrameTable>,
         body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
     ) -> Vec<BodyId> {
-        let old = self.old_table(stored);
-        let mut bodies = stored.differences(old);
+        let mut bodies = self.basis.as_ref().map_or_else(Vec::new, |old| stored.differences(old));
         if self.everyone {
             bodies.extend(stored.iter().map(|(body, _)| body));
         }

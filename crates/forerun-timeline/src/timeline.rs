@@ -7,16 +7,12 @@ use forerun_dynamics::{Body, BodyDef, BodyError, BodyId, BodyState, Environment,
 
 use crate::affected::{Mutation, Scratch};
 use crate::areas::{Areas, Until};
-use crate::command::check_numbers;
 use crate::command_log::CommandLog;
 use crate::commanding::FrameEffects;
 use crate::definitions::Definitions;
 use crate::frame_table::FrameTable;
-use crate::stale::{Stale, same_body};
-use crate::{Change, Command, CommandError, CommandKey, Frame};
-
-/// How far the id of an added body may be ahead of the names in use: ids index memory.
-const NAMES_AHEAD: usize = 65_536;
+use crate::stale::Stale;
+use crate::{Change, CommandKey, Frame};
 
 /// Edge of an area where no body says how large things are. Metres.
 const AREA_EDGE_M: f32 = 2.0;
@@ -97,7 +93,7 @@ pub struct Stats {
 pub struct Timeline {
     pub(crate) settings: TimelineSettings,
     display: Frame,
-    oldest: Frame,
+    pub(crate) oldest: Frame,
     /// The states at `oldest` and the frames after it; never empty.
     pub(crate) tables: VecDeque<Arc<FrameTable>>,
     pub(crate) definitions: Arc<Definitions>,
@@ -108,8 +104,9 @@ pub struct Timeline {
     pub(crate) effects: BTreeMap<Frame, FrameEffects>,
     pub(crate) areas: Areas,
     pub(crate) scratch: Scratch,
-    next_sequence: u64,
-    stats: Stats,
+    /// Of the local user's next command.
+    pub(crate) next_sequence: u64,
+    pub(crate) stats: Stats,
     pub(crate) mutation: Mutation,
     pub(crate) recompute_all: bool,
 }
@@ -160,126 +157,6 @@ impl Timeline {
         let names = self.definitions.names();
         Arc::make_mut(&mut self.definitions).reserve(names + 1);
         BodyId(names as u32)
-    }
-
-    /// Accepts a command for a frame after the oldest. It acts when its frame is next computed: call [`Timeline::advance`]. A command to
-    /// a body that is not there at that frame does nothing and is counted in [`Stats::ignored`].
-    ///
-    /// # Errors
-    /// When it cannot be obeyed; then nothing changed.
-    pub fn submit(&mut self, command: Command) -> Result<(), CommandError> {
-        let Command { key, change } = command;
-        self.check(&key, &change)?;
-        if key.source == 0 {
-            self.next_sequence = self.next_sequence.max(key.sequence.saturating_add(1));
-        }
-        let was_true = self.stale.is_empty();
-        self.log.insert(key, change.clone());
-        match change.body() {
-            Some(body) => self.note_body(body, key.frame, &change),
-            None => self.note_gravity(key.frame),
-        }
-        if self.recompute_all {
-            for frame in (key.frame.0 - 1)..self.horizon().0 {
-                self.stale.entry(Frame(frame)).or_default().everyone = true;
-            }
-        }
-        if was_true && !self.stale.is_empty() {
-            self.stats.last_edit = Counters::default();
-        }
-        Ok(())
-    }
-
-    /// Accepts commands in turn.
-    ///
-    /// # Errors
-    /// At the first that cannot be obeyed; those before it are accepted.
-    pub fn submit_all(&mut self, commands: impl IntoIterator<Item = Command>) -> Result<(), CommandError> {
-        commands.into_iter().try_for_each(|command| self.submit(command))
-    }
-
-    /// Accepts a change by the local user (source 0, the next sequence number).
-    ///
-    /// # Errors
-    /// As [`Timeline::submit`].
-    pub fn change(&mut self, frame: Frame, change: Change) -> Result<CommandKey, CommandError> {
-        let key = CommandKey { frame, source: 0, sequence: self.next_sequence };
-        self.submit(Command { key, change })?;
-        Ok(key)
-    }
-
-    fn check(&self, key: &CommandKey, change: &Change) -> Result<(), CommandError> {
-        if key.frame <= self.oldest {
-            return Err(CommandError::TooOld { frame: key.frame, oldest: self.oldest });
-        }
-        if self.log.contains(key) {
-            return Err(CommandError::DuplicateKey(*key));
-        }
-        check_numbers(change)?;
-        let names = self.definitions.names();
-        match change {
-            Change::Add { body, def } => {
-                if body.0 as usize >= names + NAMES_AHEAD {
-                    return Err(CommandError::UnknownBody(*body));
-                }
-                if self.definitions.def(*body).is_some() {
-                    return Err(CommandError::BodyExists(*body));
-                }
-                Body::new(def).map_err(CommandError::Body)?;
-            }
-            Change::SetKind { body, kind } => {
-                if let Some(def) = self.definitions.def(*body) {
-                    let def = BodyDef { kind: *kind, ..BodyDef::clone(def) };
-                    Body::new(&def).map_err(CommandError::Body)?;
-                }
-            }
-            _ => {}
-        }
-        match change.body() {
-            Some(body) if body.0 as usize >= names && !matches!(change, Change::Add { .. }) => {
-                Err(CommandError::UnknownBody(body))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Notes what a new command to a body puts out of date.
-    fn note_body(&mut self, body: BodyId, frame: Frame, change: &Change) {
-        let horizon = self.horizon();
-        let definitions = Arc::make_mut(&mut self.definitions);
-        definitions.reserve(body.0 as usize + 1);
-        if let Change::Add { def, .. } = change {
-            definitions.set_def(body, Arc::new(BodyDef::clone(def)));
-        }
-        let before = definitions.history(body);
-        definitions.rebuild_body(body, frame, self.log.of_body_from(body, frame));
-        for frame in (frame.0..horizon.0).map(Frame) {
-            if !same_body(before.body(frame), definitions.body(body, frame)) {
-                let stale = self.stale.entry(frame).or_default();
-                stale.bodies.entry(body).or_insert_with(|| before.body(frame).cloned());
-            }
-        }
-        if frame <= horizon {
-            self.stale.entry(frame.minus(1)).or_default().touched.insert(body);
-        }
-    }
-
-    /// Notes what a new command to all bodies puts out of date.
-    fn note_gravity(&mut self, frame: Frame) {
-        let horizon = self.horizon();
-        let definitions = Arc::make_mut(&mut self.definitions);
-        let before: Vec<Environment> =
-            (frame.0..horizon.0).map(|k| definitions.environment(Frame(k))).collect();
-        definitions.rebuild_environment(frame, self.log.gravities_from(frame));
-        for (frame, before) in (frame.0..horizon.0).map(Frame).zip(before) {
-            if definitions.environment(frame) != before {
-                self.stale.entry(frame).or_default().everyone = true;
-            }
-        }
-        // The command ends everybody's rest.
-        if frame <= horizon {
-            self.stale.entry(frame.minus(1)).or_default().everyone = true;
-        }
     }
 
     /// Tells where the display is. Frames older than `past` before it are forgotten, unless the physics still needs them.

@@ -9,7 +9,7 @@ use forerun_timeline::check::{CheckSettings, check};
 /// Body-frames that differ from full runs over all scenes and some seeds.
 fn mismatches(mutation: Mutation) -> u64 {
     let mut environment = Environment::default();
-    environment.settings.rest_frames = 6;
+    environment.settings.rest_seconds = 0.1;
     let mut count = 0;
     for (_, bodies) in scenes::all() {
         for seed in 20..24 {

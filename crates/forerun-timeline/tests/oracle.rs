@@ -15,7 +15,7 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 fn environment(seed: u64) -> Environment {
     let mut environment = Environment::default();
     if seed % 2 == 1 {
-        environment.settings.rest_frames = 6;
+        environment.settings.rest_seconds = 0.1;
     }
     environment
 }
@@ -56,6 +56,12 @@ fn session(bodies: &[BodyDef], seed: u64, frames: u64) -> Session {
                 }
             }
             4 => {
+                let index = random.below(commands.len() as u64 + 1) as usize;
+                if index < commands.len() && timeline.retract(&commands[index].key) {
+                    commands.swap_remove(index);
+                }
+            }
+            5 => {
                 let ahead = 1 + random.below(6);
                 timeline.set_display(Frame(timeline.display().0 + ahead));
             }
@@ -63,7 +69,9 @@ fn session(bodies: &[BodyDef], seed: u64, frames: u64) -> Session {
                 for _ in 0..=random.below(12) {
                     let _ = timeline.advance();
                 }
-                let _ = timeline.snapshot();
+                let snapshot = timeline.snapshot();
+                let valid_to = snapshot.valid_to();
+                assert_eq!(timeline.audit(valid_to.minus(1 + random.below(3))), None);
             }
         }
     }
@@ -123,6 +131,19 @@ fn edits_one_by_one() {
                 panic!("scene {name}, seed {seed}: {} body-frames differ; {first}", report.mismatches);
             }
             assert!(report.recomputed <= report.full, "{report:?}");
+        }
+    }
+}
+
+/// Many more sessions: `cargo test -p forerun-timeline --test oracle -- --ignored`.
+#[test]
+#[ignore = "takes minutes"]
+fn sessions_at_length() {
+    let pool = pool(2);
+    for seed in 1000..1150 {
+        for (name, bodies) in scenes::all() {
+            let session = pool.install(|| session(&bodies, seed, 60 + seed % 3 * 40));
+            assert_equals_full_run(name, &bodies, seed, &session);
         }
     }
 }

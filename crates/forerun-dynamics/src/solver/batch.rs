@@ -13,7 +13,7 @@ use super::load::{Load, LoadPass};
 use super::positions::{Ending, moved, settle};
 use super::prepare::{Source, prepare};
 use super::shock::propagate_shock;
-use super::sweep::sweep;
+use super::sweep::{relax, sweep};
 use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
 use crate::lanes::{Portable, Row};
@@ -107,6 +107,9 @@ impl<'a> Batch<'a> {
     pub(crate) fn resolve_contacts(&mut self) {
         let h = self.substep_seconds();
         let settings = self.environment.settings;
+        // Slower is what gravity does to a body at rest: that is contact, not collision.
+        let fall = settings.frame_seconds * self.environment.gravity.length();
+        let spared = if self.bounces { fall } else { f32::INFINITY };
         let driven = self.driven();
         let guard = EnergyGuard { islands: &self.islands, dynamic: &self.dynamic, driven: &driven };
         let mut kicks: Vec<Row> = self.bodies.accelerations.iter().map(|a| Row(a.0.map(|x| x * h))).collect();
@@ -120,6 +123,7 @@ impl<'a> Batch<'a> {
                     displacements: &bodies.displacements,
                     kicks: &kicks,
                     substep_seconds: h,
+                    fall,
                 };
                 resolve_collisions(blocks, &mut moving);
             }
@@ -141,7 +145,7 @@ impl<'a> Batch<'a> {
             }
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);
-            sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
+            relax(blocks, &mut bodies.velocities, &bodies.displacements, h, spared);
         }
     }
 

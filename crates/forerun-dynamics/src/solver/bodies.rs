@@ -57,8 +57,8 @@ impl Scale {
         Row([v.x, v.y, v.z, w.x, w.y, w.z, 0.0, 0.0])
     }
 
-    /// A row to world velocity and angular velocity, or displacement and rotation vector.
-    pub(crate) fn from_row(self, row: &Row) -> (Vec3, Vec3) {
+    /// A row in the world: velocity and angular velocity, or displacement and rotation vector.
+    pub(crate) fn world_of(self, row: &Row) -> (Vec3, Vec3) {
         let r = &row.0;
         let linear = Vec3::new(r[0], r[1], r[2]) * self.linear;
         let angular = self.axes * (Vec3::new(r[3], r[4], r[5]) * self.angular);

@@ -1,7 +1,7 @@
 //! Collisions: impulses with restitution on the velocities before gravity (Guendelman et al. 2003, section 7; dissertation 2.4.4).
 //!
 //! A contact collides when it approaches and will close within the substep. A body at rest has no velocity before gravity, so that it
-//! does not bounce, whatever its restitution: there is no threshold speed.
+//! does not bounce, whatever its restitution. What gravity adds in one frame counts as rest: a speed that shrinks with the frame, no threshold of its own.
 
 use super::blocks::Block;
 use super::sweep::{Sides, friction};
@@ -19,6 +19,8 @@ pub(crate) struct Moving<'a> {
     /// Mass-scaled change of velocity that gravity and forces will make in the substep.
     pub(crate) kicks: &'a [Row],
     pub(crate) substep_seconds: f32,
+    /// What gravity adds to a speed in a frame: slower approaches are contacts, not collisions. m/s
+    pub(crate) fall: f32,
 }
 
 dispatched! {
@@ -58,7 +60,10 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
         let speed = v.along(block, &row);
         let ahead = separation + h * (speed + kick.along(block, &row));
         let is_point = point.inverse_k.gt(F::zero());
-        let hit = is_point & speed.lt(F::zero()) & ahead.lt(F::zero()) & block.restitution.gt(F::zero());
+        let hit = is_point
+            & speed.lt(F::splat(-moving.fall))
+            & ahead.lt(F::zero())
+            & block.restitution.gt(F::zero());
         hits[q] = hit.select(F::one(), F::zero());
         target[q] = -(block.restitution * speed);
         all = is_point.select(all.min(hits[q]), all);
@@ -68,7 +73,8 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
     if !any.gt(F::zero()).any() {
         return false;
     }
-    let sum = bounce(block, &mut v, &hits, &target, target_sum, all);
+    let targets = Targets { hits, speeds: target, sum: target_sum, all };
+    let sum = bounce(block, &mut v, &targets);
     // Friction of the collision alone: the impulses of the contacts are kept apart.
     let (tangents, twist) = (block.friction.impulses, block.friction.twist_impulse);
     block.friction.impulses = [F::zero(); 2];
@@ -80,20 +86,24 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
     true
 }
 
+/// What the points of a contact are to bounce to.
+struct Targets<F> {
+    /// 1 for the points that collide.
+    hits: [F; 4],
+    speeds: [F; 4],
+    sum: F,
+    /// 1 where all points of the contact collide: a flat landing.
+    all: F,
+}
+
 /// Normal impulses towards the target speeds. Returns their sum.
 #[inline(always)]
-fn bounce<F: Lanes>(
-    block: &Block<F>,
-    v: &mut Sides<F>,
-    hits: &[F; 4],
-    target: &[F; 4],
-    target_sum: F,
-    all: F,
-) -> F {
+fn bounce<F: Lanes>(block: &Block<F>, v: &mut Sides<F>, targets: &Targets<F>) -> F {
+    let Targets { hits, speeds: target, .. } = targets;
     let row = block.centre_jacobian();
     let centre = &block.centre;
-    let lacking = target_sum * centre.inverse_count - v.along(block, &row);
-    let flat = all.gt(F::splat(0.5)).select((centre.inverse_k * lacking).max(F::zero()), F::zero());
+    let lacking = targets.sum * centre.inverse_count - v.along(block, &row);
+    let flat = targets.all.gt(F::splat(0.5)).select((centre.inverse_k * lacking).max(F::zero()), F::zero());
     v.apply(block, &row, flat);
     let mut impulses = [F::zero(); 4];
     for q in 0..4 {

@@ -12,6 +12,8 @@ use crate::{Environment, Member};
 
 /// Sinking slower than this is noise, not momentum. m/s
 const DEAD_SPEED: f32 = 0.1;
+/// What a body that nothing supports may sink at: anything. m/s
+const UNSUPPORTED: f32 = 1e9;
 /// A support's normal must rise by at least this.
 const RISE_MIN: f32 = 0.3;
 /// Points that would have to pull are dropped and the pressure is fitted again, at most this often.
@@ -140,15 +142,17 @@ impl LoadPass<'_> {
             let mass = 1.0 / body.inverse_mass;
             still[i].sum = mass * fall;
             total[i].sum = mass * fall;
-            let mut lowest = f32::MAX;
+            let mut lowest: Option<f32> = None;
             for (link, point) in self.points_below(i, compass) {
                 let separation = self.contacts[link.contact as usize].manifold.points[point].separation;
-                lowest = lowest.min(allowed[link.body as usize] + separation.max(0.0) / h);
+                let here = allowed[link.body as usize] + separation.max(0.0) / h;
+                lowest = Some(lowest.map_or(here, |l| l.min(here)));
             }
-            allowed[i] = if lowest < f32::MAX { lowest } else { 1e9 };
-            if lowest == f32::MAX {
+            let Some(lowest) = lowest else {
+                allowed[i] = UNSUPPORTED;
                 continue;
-            }
+            };
+            allowed[i] = lowest;
             total[i].sum = mass * (fall + shrink(sinking - lowest)).max(0.0);
             let spin = state.angular_velocity.length() * body.radius;
             if spin > DEAD_SPEED {

@@ -1,4 +1,8 @@
 //! The solver: one batch of islands through the stages of a frame, or of a slice of one.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "kernels walk several short arrays side by side; the index is the point"
+)]
 
 mod blocks;
 mod bodies;

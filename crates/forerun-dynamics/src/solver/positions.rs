@@ -8,6 +8,9 @@ use super::islands::Islands;
 use super::rotation::{angular_momentum, is_isotropic, times_inverse_inertia, turned};
 use crate::{BodyState, Environment, Member};
 
+/// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
+const SHALLOW_REST: u32 = 4;
+
 /// What the end of a frame needs to know about one body besides its rows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ending {
@@ -29,8 +32,8 @@ pub(crate) fn moved(
         return fly(member.body, &member.state, environment, environment.settings.frame_seconds);
     }
     let scale = Scale::of(member);
-    let (velocity, spin) = scale.from_row(&bodies.velocities[i]);
-    let (shift, rotation) = scale.from_row(&bodies.displacements[i]);
+    let (velocity, spin) = scale.world_of(&bodies.velocities[i]);
+    let (shift, rotation) = scale.world_of(&bodies.displacements[i]);
     let turned_to = turned(member.state.rotation, rotation);
     let angular_velocity = carried(member, &scale.axes, ending.spin, spin, Mat3::from_quat(turned_to));
     BodyState {
@@ -64,11 +67,11 @@ pub(crate) fn settle(
     environment: &Environment,
 ) {
     let settings = &environment.settings;
-    if settings.rest_frames == 0 {
+    if settings.rest_frames() == 0 {
         next.iter_mut().for_each(|state| state.rest = 0);
         return;
     }
-    let full = settings.rest_frames;
+    let full = settings.rest_frames();
     let mut fixpoint = vec![true; members.len()];
     for (i, member) in members.iter().enumerate() {
         if !member.body.is_dynamic() {
@@ -76,13 +79,18 @@ pub(crate) fn settle(
         }
         let calm = quiet(member, &next[i], environment);
         let before = member.state.rest.min(full);
-        let shallow = endings[i].overlap < 2.0 * settings.overlap_allowed_m;
-        next[i].rest = match (calm, before) {
-            (false, _) => 0,
-            (true, b) if b + 1 < full => b + 1,
-            // The last step into rest waits until the overlap has been pushed out.
-            (true, b) if b + 1 == full && !shallow => b,
-            (true, _) => full,
+        let overlap = endings[i].overlap;
+        let shallow = overlap < 2.0 * settings.overlap_allowed_m;
+        let counted = (before + 1).min(full);
+        next[i].rest = if !calm {
+            0
+        } else if overlap > settings.rest_overlap_m {
+            // Pushed on, even out of rest: a body between two frozen ones could not get out.
+            counted.min(full - 1)
+        } else if shallow && counted >= full.div_ceil(SHALLOW_REST) {
+            full
+        } else {
+            counted
         };
         if next[i].rest < full || before < full {
             fixpoint[islands.root(i)] = false;

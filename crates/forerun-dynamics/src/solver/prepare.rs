@@ -92,14 +92,21 @@ fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
         lanes.friction[0][lane] = material.static_friction;
         lanes.friction[1][lane] = material.friction;
         lanes.restitution[lane] = material.restitution;
-        let (below, above) = (source.levels[first], source.levels[second]);
-        if below < above {
-            lanes.yields[0][lane] = source.shock_yield;
-        } else if above < below {
-            lanes.yields[1][lane] = source.shock_yield;
+        // What lies below moves less than its mass says, and never more than what lies above.
+        let (low, high) = (source.levels[first], source.levels[second]);
+        let inverse = [source.members[first].body.inverse_mass, source.members[second].body.inverse_mass];
+        if low < high {
+            lanes.yields[0][lane] = source.shock_yield * lighter_share(inverse[1], inverse[0]);
+        } else if high < low {
+            lanes.yields[1][lane] = source.shock_yield * lighter_share(inverse[0], inverse[1]);
         }
     }
     lanes
+}
+
+/// 1, or less where the lower body is the lighter one: the ratio of the inverse masses.
+fn lighter_share(above: f32, below: f32) -> f32 {
+    if above < below { above / below } else { 1.0 }
 }
 
 /// Friction is the geometric mean, restitution the larger of the two.

@@ -3,6 +3,7 @@
 //! Only + - * / and square roots: the same bits on every platform.
 
 use forerun_geometry::{Mat3, Quat, Vec3};
+use glam::{DQuat, DVec3};
 
 /// Largest turn (radians) for which the series below is used as it stands.
 const SERIES_MAX: f32 = 1.0;
@@ -63,19 +64,29 @@ pub(crate) fn spun(q: Quat, angular_velocity: Vec3, inverse_inertia: Vec3, secon
     }
     let whole_turn = angular_velocity.length() * seconds;
     let steps = ((whole_turn / FREE_TURN_MAX) as u32).min(FREE_STEPS_MAX - 1) + 1;
-    let h = seconds / steps as f32;
-    let mut q = q;
+    let h = f64::from(seconds) / f64::from(steps);
+    // In double precision: the same small turn rounds the same way every time, and in single precision the momentum would drift by it.
+    let inverse_inertia = inverse_inertia.as_dvec3();
+    let mut q = q.as_dquat();
     // Body frame: the momentum turns against the body.
-    let mut l = (q.conjugate() * angular_velocity) / inverse_inertia;
+    let mut l = (q.conjugate() * angular_velocity.as_dvec3()) / inverse_inertia;
     for _ in 0..steps {
         for (axis, part) in [(0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)] {
-            let mut rotation = Vec3::ZERO;
+            let mut rotation = DVec3::ZERO;
             rotation[axis] = l[axis] * inverse_inertia[axis] * (h * part);
-            let r = turn(rotation);
+            let r = small_turn(rotation);
             l = r.conjugate() * l;
             q *= r;
         }
-        q = q.normalize();
     }
-    (q, q * (l * inverse_inertia))
+    let q = q.normalize();
+    (q.as_quat(), (q * (l * inverse_inertia)).as_vec3())
+}
+
+/// As [`turn`], for turns of at most about [`FREE_TURN_MAX`] radians, in double precision.
+fn small_turn(rotation: DVec3) -> DQuat {
+    let square = rotation.length_squared();
+    let tangent = 0.5 * (1.0 + square * (1.0 / 12.0 + square * (1.0 / 120.0 + square * (17.0 / 20160.0))));
+    let v = rotation * tangent;
+    DQuat::from_xyzw(v.x, v.y, v.z, 1.0).normalize()
 }

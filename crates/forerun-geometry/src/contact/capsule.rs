@@ -43,7 +43,7 @@ pub(super) fn rod_rod(a: &Rod, b: &Rod, fallback: Vec3, margin: f32) -> Option<M
     let nearest = a.touch(b, (on_a, on_b), fallback);
     let mut points = [nearest; 3];
     let mut count = 0;
-    if let Some(ends) = parallel_ends(a, b) {
+    if let Some(ends) = parallel_ends(a, b, NEARLY_PARALLEL) {
         let ends = ends.map(|pair| a.touch(b, pair, nearest.normal));
         if nearest.separation < ends[0].separation.min(ends[1].separation) - CROSSING {
             count = 1;
@@ -90,12 +90,12 @@ impl Manifold {
 }
 
 /// The ends of the stretch along which two nearly parallel segments face each other, on each of the two; none if they
-/// are not nearly parallel or the stretch has no length.
-pub(super) fn parallel_ends(a: &Rod, b: &Rod) -> Option<[(Vec3, Vec3); 2]> {
+/// enclose an angle of that sine or more, or the stretch has no length.
+pub(super) fn parallel_ends(a: &Rod, b: &Rod, sine: f32) -> Option<[(Vec3, Vec3); 2]> {
     let (along_a, along_b) = (a.ends[1] - a.ends[0], b.ends[1] - b.ends[0]);
     let (square_a, square_b) = (along_a.length_squared(), along_b.length_squared());
     let cross = along_a.cross(along_b).length_squared();
-    if cross >= NEARLY_PARALLEL * NEARLY_PARALLEL * square_a * square_b {
+    if cross >= sine * sine * square_a * square_b {
         return None;
     }
     let place = |point: Vec3| (point - a.ends[0]).dot(along_a) / square_a;

@@ -2,7 +2,7 @@
 
 use super::reduce::Reducer;
 use super::{ContactPoint, Manifold, Placed, any_perpendicular, contact_manifolds};
-use crate::Shape;
+use crate::{Shape, Vec3};
 
 /// More manifolds than this between two shapes are merged where their normals agree.
 const MANIFOLDS_KEPT: usize = 4;
@@ -28,9 +28,16 @@ fn parts_of(first: &Placed, second: &Placed, margin: f32, out: &mut Vec<Manifold
         for (pose, shape) in &compound.parts {
             parts_of(first, &Placed { shape, pose: second.pose * *pose, ..*second }, margin, out);
         }
-    } else {
+    } else if may_touch(first, second, margin) {
         contact_manifolds(first, second, margin, out);
     }
+}
+
+/// Whether the balls around two parts come within the margin. The balls of half-spaces are endless.
+fn may_touch(first: &Placed, second: &Placed, margin: f32) -> bool {
+    let reach = first.shape.radius_about(Vec3::ZERO) + second.shape.radius_about(Vec3::ZERO) + margin;
+    let arm = second.pose.position - first.pose.position;
+    arm.length_squared() <= reach * reach
 }
 
 /// Merges the manifolds from `start` on: each joins the first before it with which its normal agrees.

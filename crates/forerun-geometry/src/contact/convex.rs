@@ -5,7 +5,8 @@
 //! 3. Otherwise the general axis: GJK where they are apart, the expanding polytope where they overlap.
 //!
 //! A face is preferred to the general axis by up to [`FACE_MARGIN`]: its four points are worth more than the last
-//! millimetres of the true distance, and the answer must not flip.
+//! millimetres of the true distance, and the answer must not flip. What is left of it after clipping must still be as
+//! deep as the general axis says, within the same margin: a corner that hangs over the face's edge touches elsewhere.
 
 use glam::DVec3;
 
@@ -14,7 +15,7 @@ use super::clip::face_manifold;
 use super::gjk::{self, Distance, Witness};
 use super::reduce::TIE;
 use super::solid::Solid;
-use super::{ContactPoint, Manifold, Motion, Placed, any_perpendicular, penetration, unit_or};
+use super::{ContactPoint, Manifold, Placed, any_perpendicular, penetration, unit_or};
 use crate::{Pose, Shape, Vec3};
 
 /// By how much the general axis must beat the best face, for large shapes. Metres.
@@ -31,6 +32,13 @@ const EXACT: f32 = 1.0e-4;
 
 /// The axis between two sides has this sine with the plane across a cylinder, at most.
 const ACROSS: f32 = 1.0e-3;
+
+/// Edges that enclose an angle with a smaller sine run alongside each other and touch in two points. About 1 degree: beside
+/// each other they are only where they cross, and both points are given the normal of that place.
+const ALONGSIDE: f32 = 0.02;
+
+/// Cuboids that move by less than this together are left to the next frame. Metres.
+const UNHURRIED: f32 = 5.0e-3;
 
 /// A face, the solid that it belongs to, and how far the other is above it.
 #[derive(Clone, Copy)]
@@ -59,13 +67,14 @@ pub(super) fn convex_convex(
 
 /// Two cuboids that no face of theirs brings together: the nearest corner or edge, if they are about to meet there.
 pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) -> Option<Manifold> {
-    if first.motion == Motion::default() && second.motion == Motion::default() {
+    let cuboids = matches!((first.shape, second.shape), (Shape::Cuboid(_), Shape::Cuboid(_)));
+    if !cuboids || first.reach() + second.reach() < UNHURRIED {
         return None;
     }
     let origin = first.pose.position;
     let a = Solid::new(first.shape, &first.pose, origin)?;
     let b = Solid::new(second.shape, &second.pose, origin)?;
-    let Distance::Apart(witness) = gjk::distance(&a, &b) else { return None };
+    let Distance::Apart(witness) = gjk::distance(&a, &b, margin) else { return None };
     let axis = Axis::from_witness(&a, &b, &witness);
     let manifold = axis.manifold(&a, &b, margin)?.moved(origin);
     let point = manifold.points[0];
@@ -73,10 +82,11 @@ pub(super) fn corner_about_to_hit(first: &Placed, second: &Placed, margin: f32) 
     (closing.dot(point.normal) > point.separation).then_some(manifold)
 }
 
-impl Motion {
-    /// Displacement of a point that moves along, to first order. Metres.
-    fn of(&self, point: Vec3) -> Vec3 {
-        self.linear + self.angular.cross(point - self.about)
+impl Placed<'_> {
+    /// Further than this none of its points moves. Metres.
+    fn reach(&self) -> f32 {
+        let arm = (self.motion.about - self.pose.position).length() + self.shape.radius_about(Vec3::ZERO);
+        self.motion.linear.length() + self.motion.angular.length() * arm
     }
 }
 
@@ -95,7 +105,7 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
             return on_face;
         }
     }
-    let side = side_axis(a, b);
+    let side = side_axis(a, b, margin);
     if let Some(side) = &side {
         if side.separation >= margin {
             return None;
@@ -105,12 +115,13 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
             return side.manifold(a, b, margin);
         }
     }
-    let general = general_axis(a, b)?;
+    let general = general_axis(a, b, margin)?;
     if general.separation >= margin {
         return None;
     }
     if let (Some(face), Some(manifold)) = (face, on_face)
         && face.separation >= general.separation - face_margin
+        && manifold.deepest() <= general.separation + face_margin
     {
         return Some(manifold);
     }
@@ -181,7 +192,7 @@ impl Axis {
         if let (Some(edge_a), Some(edge_b)) = (a.edge(normal), b.edge(-normal)) {
             let (rod_a, rod_b) =
                 (Rod { ends: edge_a, radius: a.radius }, Rod { ends: edge_b, radius: b.radius });
-            if let Some(ends) = parallel_ends(&rod_a, &rod_b) {
+            if let Some(ends) = parallel_ends(&rod_a, &rod_b, ALONGSIDE) {
                 let ends =
                     ends.map(|(on_a, on_b)| at(on_a, on_b, (on_b - on_a).dot(normal) - a.radius - b.radius));
                 let near = |point: &ContactPoint| point.separation < margin;
@@ -198,13 +209,14 @@ impl Axis {
 
 /// The axis between the side of a cylinder and whatever is nearest to it; none if there is no cylinder, if its cap or rim is
 /// nearer, or if an axis reaches into the other shape.
-fn side_axis(a: &Solid, b: &Solid) -> Option<Axis> {
+fn side_axis(a: &Solid, b: &Solid, margin: f32) -> Option<Axis> {
     let cylinders = [a.cylinder_axis(), b.cylinder_axis()];
     if cylinders == [None, None] {
         return None;
     }
     let (rod_a, rod_b) = (a.as_rod(), b.as_rod());
-    let Distance::Apart(witness) = gjk::distance(&rod_a, &rod_b) else { return None };
+    let enough = margin + rod_a.radius + rod_b.radius;
+    let Distance::Apart(witness) = gjk::distance(&rod_a, &rod_b, enough) else { return None };
     let mut normal = unit_or(witness.normal.as_vec3(), Vec3::Y);
     for axis in cylinders.into_iter().flatten() {
         let along = normal.dot(axis);
@@ -229,8 +241,8 @@ fn separation_along(a: &Solid, b: &Solid, normal: Vec3) -> f32 {
 }
 
 /// The axis of the true distance, or of the shortest way out of an overlap.
-fn general_axis(a: &Solid, b: &Solid) -> Option<Axis> {
-    match gjk::distance(a, b) {
+fn general_axis(a: &Solid, b: &Solid, margin: f32) -> Option<Axis> {
+    match gjk::distance(a, b, margin + a.radius + b.radius) {
         Distance::Apart(witness) => Some(Axis::from_witness(a, b, &witness)),
         Distance::Overlap(simplex) => {
             let witness = penetration::penetration(a, b, &simplex);

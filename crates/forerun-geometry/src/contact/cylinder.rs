@@ -19,8 +19,10 @@ pub(super) struct Drum {
 
 /// The points of a cylinder that come first in a direction.
 pub(super) enum Lowest {
-    /// Four points on the rim of a cap, a quarter turn apart, in order; the first is the lowest.
-    Cap([Vec3; 4]),
+    /// Four points on the rim of a flat cap, a quarter turn apart, in order.
+    FlatCap([Vec3; 4]),
+    /// The same of a tilted cap; the first is the lowest.
+    TiltedCap([Vec3; 4]),
     /// Both ends of the lowest line of the side, the lower first.
     Side([Vec3; 2]),
 }
@@ -28,7 +30,7 @@ pub(super) enum Lowest {
 impl Lowest {
     pub(super) fn as_slice(&self) -> &[Vec3] {
         match self {
-            Lowest::Cap(points) => points,
+            Lowest::FlatCap(points) | Lowest::TiltedCap(points) => points,
             Lowest::Side(points) => points,
         }
     }
@@ -60,11 +62,13 @@ impl Drum {
             let rim = unit_or(downhill, outward) * self.radius;
             return Lowest::Side([cap + rim, cap + rim - outward * (2.0 * self.half_height)]);
         }
-        let towards = if sine < FLAT { hint - outward * hint.dot(outward) } else { downhill };
+        let flat = sine < FLAT;
+        let towards = if flat { hint - outward * hint.dot(outward) } else { downhill };
         let u = unit_or(towards, super::any_perpendicular(outward));
         // Rounding leaves a trace of the normal in a short `downhill`: once more, so that the rim stays on the cap.
         let u = unit_or(u - outward * u.dot(outward), super::any_perpendicular(outward)) * self.radius;
         let v = outward.cross(u);
-        Lowest::Cap([cap + u, cap + v, cap - u, cap - v])
+        let rim = [cap + u, cap + v, cap - u, cap - v];
+        if flat { Lowest::FlatCap(rim) } else { Lowest::TiltedCap(rim) }
     }
 }

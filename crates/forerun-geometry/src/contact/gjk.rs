@@ -11,8 +11,8 @@ use super::solid::Solid;
 /// No pair of finite shapes needs more; a smooth pair takes about twenty.
 const ROUNDS_MAX: usize = 64;
 
-/// The search ends when the squared distance is known to this part of itself.
-const GAP: f64 = 1.0e-12;
+/// The search ends when the squared distance is known to this part of itself; the normal, to its square root.
+const GAP: f64 = 1.0e-10;
 
 /// Cores nearer than this overlap. Metres.
 const TOUCHING: f64 = 1.0e-9;
@@ -58,8 +58,10 @@ pub(super) fn support(a: &Solid, b: &Solid, direction: DVec3) -> Vertex {
     Vertex { w: on_b - on_a, on_a, on_b }
 }
 
-/// The distance between two cores.
-pub(super) fn distance(a: &Solid, b: &Solid) -> Distance {
+/// The distance between two cores. Of cores farther apart than `enough` (metres) only that they are so is known: the
+/// witness has some distance above it.
+pub(super) fn distance(a: &Solid, b: &Solid, enough: f32) -> Distance {
+    let enough = f64::from(enough);
     let arm = (b.middle() - a.middle()).as_dvec3();
     let start = if arm.length_squared() > 1.0e-12 { -arm } else { DVec3::X };
     let mut simplex = Simplex::of(support(a, b, start));
@@ -71,7 +73,10 @@ pub(super) fn distance(a: &Solid, b: &Solid) -> Distance {
         }
         let vertex = support(a, b, -nearest);
         let known = simplex.vertices().iter().any(|other| other.w == vertex.w);
-        if known || square - nearest.dot(vertex.w) <= GAP * square {
+        // All of the difference is at least this far along `nearest`, times its length.
+        let bound = nearest.dot(vertex.w);
+        let far = bound > 0.0 && bound * bound > enough * enough * square;
+        if known || far || square - bound <= GAP * square {
             break;
         }
         let mut next = simplex;

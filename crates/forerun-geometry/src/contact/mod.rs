@@ -18,7 +18,8 @@ mod cuboid;
 mod cylinder;
 mod gjk;
 mod half_space;
-pub mod mesh;
+mod mesh;
+mod passing;
 mod penetration;
 mod reduce;
 mod solid;
@@ -74,23 +75,26 @@ pub struct Placed<'a> {
 ///
 /// Only points whose separation is below `margin` (metres, 0 or more) are listed. The normal points from `first` to
 /// `second`. What does not move (two half-spaces) has no contact. All numbers are assumed finite.
+///
+/// The motions decide about what is still apart: a contact that would stop shapes that in truth pass each other is left
+/// out, and two cuboids are met at a corner or edge that no face brings together only if they are about to hit there.
 pub fn contact_manifolds(first: &Placed, second: &Placed, margin: f32, out: &mut Vec<Manifold>) {
     match (first.shape, second.shape) {
         (Shape::Compound(_), _) | (_, Shape::Compound(_)) => {
             compound::compound_any(first, second, margin, out);
         }
         (Shape::Mesh(_), _) | (_, Shape::Mesh(_)) => mesh::mesh_manifolds(first, second, margin, out),
-        (Shape::Cuboid(a), Shape::Cuboid(b)) => {
-            let found = cuboid_cuboid(a, &first.pose, b, &second.pose, margin);
-            out.extend(found.or_else(|| convex::corner_about_to_hit(first, second, margin)));
+        _ => {
+            let found = convex_pair((first.shape, &first.pose), (second.shape, &second.pose), margin)
+                .or_else(|| convex::corner_about_to_hit(first, second, margin));
+            out.extend(found.filter(|manifold| !passing::passes_by(first, second, manifold)));
         }
-        _ => out.extend(convex_pair((first.shape, &first.pose), (second.shape, &second.pose), margin)),
     }
 }
 
 /// The manifold of two convex shapes, or of a convex shape and a half-space.
 fn convex_pair(first: (&Shape, &Pose), second: (&Shape, &Pose), margin: f32) -> Option<Manifold> {
-    use Shape::{Capsule, HalfSpace, Sphere};
+    use Shape::{Capsule, Cuboid, HalfSpace, Sphere};
     let ((a, pa), (b, pb)) = (first, second);
     match (a, b) {
         (HalfSpace, _) => half_space::half_space_any(pa, b, pb, margin),
@@ -98,6 +102,7 @@ fn convex_pair(first: (&Shape, &Pose), second: (&Shape, &Pose), margin: f32) -> 
         (Sphere(s), _) => sphere::sphere_any(s, pa.position, second, margin),
         (_, Sphere(s)) => sphere::sphere_any(s, pb.position, first, margin).map(Manifold::flipped),
         (Capsule(c), Capsule(d)) => capsule::capsule_capsule(c, pa, d, pb, margin),
+        (Cuboid(c), Cuboid(d)) => cuboid_cuboid(c, pa, d, pb, margin),
         _ => convex::convex_convex(first, second, margin),
     }
 }
@@ -106,10 +111,12 @@ impl ContactPoint {
     /// Fills the unused places of a manifold.
     const FAR_APART: ContactPoint =
         ContactPoint { position: Vec3::ZERO, normal: Vec3::ZERO, separation: 1.0e6 };
+}
 
-    /// The same point, seen from the other shape.
-    fn flipped(self) -> Self {
-        ContactPoint { normal: -self.normal, ..self }
+impl Motion {
+    /// Displacement of a point that moves along, to first order. Metres.
+    fn of(&self, point: Vec3) -> Vec3 {
+        self.linear + self.angular.cross(point - self.about)
     }
 }
 
@@ -126,8 +133,12 @@ impl Manifold {
     }
 
     /// The same contact, seen from the other shape.
-    fn flipped(self) -> Self {
-        Manifold { normal: -self.normal, points: self.points.map(ContactPoint::flipped), ..self }
+    fn flipped(mut self) -> Self {
+        self.normal = -self.normal;
+        for point in &mut self.points[..self.count as usize] {
+            point.normal = -point.normal;
+        }
+        self
     }
 
     /// The points that are meant.

@@ -11,6 +11,12 @@ const VERTICES_MAX: usize = 160;
 /// The depth is known when one more vertex would change it by less. Metres.
 const DEPTH_KNOWN: f64 = 1.0e-8;
 
+/// A vertex is seen from a facet if it is above the facet's plane by more than this. Metres.
+const SEEN: f64 = 1.0e-12;
+
+/// Planes whose distances differ by less are one. Metres.
+const SAME_PLANE: f64 = 1.0e-7;
+
 /// A face of the polytope, counter-clockwise seen from outside.
 #[derive(Clone, Copy)]
 struct Facet {
@@ -37,13 +43,39 @@ pub(super) fn penetration(a: &Solid, b: &Solid, simplex: &Simplex) -> Option<Wit
         }
         let vertex = support(a, b, nearest.normal);
         let gain = vertex.w.dot(nearest.normal) - nearest.distance;
-        if gain <= DEPTH_KNOWN || vertices.len() >= VERTICES_MAX {
-            return Some(nearest.witness(&vertices));
-        }
+        let done = gain <= DEPTH_KNOWN || vertices.len() >= VERTICES_MAX;
         vertices.push(vertex);
-        if !grow(&mut facets, &vertices) {
-            return Some(nearest.witness(&vertices));
+        if done || !grow(&mut facets, &vertices) {
+            return Some(witness(&nearest, &facets, &vertices));
         }
+    }
+}
+
+/// The point of the nearest plane that is nearest to the origin, carried back to the two cores.
+///
+/// An edge against an edge makes a parallelogram of two facets; rounding may pick the one beside the point. So the facet
+/// that holds the point is looked for among all that are as near.
+fn witness(nearest: &Facet, facets: &[Facet], vertices: &[Vertex]) -> Witness {
+    let foot = nearest.normal * nearest.distance;
+    let mut weights = nearest.weights(foot, vertices);
+    let mut corners = nearest.corners;
+    let least = |weights: &[f64; 3]| weights.iter().fold(f64::INFINITY, |least, w| least.min(*w));
+    for facet in facets.iter().filter(|facet| facet.distance < nearest.distance + SAME_PLANE) {
+        let candidate = facet.weights(foot, vertices);
+        if least(&candidate) > least(&weights) {
+            (weights, corners) = (candidate, facet.corners);
+        }
+    }
+    let inside = weights.map(|weight| weight.max(0.0));
+    let sum = inside[0] + inside[1] + inside[2];
+    let [p, q, r] = corners.map(|corner| vertices[corner]);
+    let mix = |x: DVec3, y: DVec3, z: DVec3| (x * inside[0] + y * inside[1] + z * inside[2]) / sum;
+    Witness {
+        on_a: mix(p.on_a, q.on_a, r.on_a),
+        on_b: mix(p.on_b, q.on_b, r.on_b),
+        // The difference reaches as far beyond the origin as the second shape must go back to leave the first.
+        normal: -nearest.normal,
+        separation: -nearest.distance,
     }
 }
 
@@ -60,34 +92,24 @@ impl Facet {
         Facet { corners, normal, distance: normal.dot(p) }
     }
 
-    /// The point of the facet that is nearest to the origin, carried back to the two cores.
-    fn witness(&self, vertices: &[Vertex]) -> Witness {
-        let [p, q, r] = self.corners.map(|corner| vertices[corner]);
-        let foot = self.normal * self.distance;
-        let area = |x: DVec3, y: DVec3| (x - foot).cross(y - foot).dot(self.normal).max(0.0);
-        let parts = [area(q.w, r.w), area(r.w, p.w), area(p.w, q.w)];
-        let sum = parts[0] + parts[1] + parts[2];
-        let weights = if sum > 0.0 { parts.map(|part| part / sum) } else { [1.0, 0.0, 0.0] };
-        let on_a = p.on_a * weights[0] + q.on_a * weights[1] + r.on_a * weights[2];
-        let on_b = p.on_b * weights[0] + q.on_b * weights[1] + r.on_b * weights[2];
-        // Moving the second by -n d takes the origin out: it leaves the first along the opposite of the facet's normal.
-        Witness { on_a, on_b, normal: -self.normal, separation: -self.distance }
+    /// Barycentric coordinates of a point of the facet's plane; they add up to 1.
+    fn weights(&self, point: DVec3, vertices: &[Vertex]) -> [f64; 3] {
+        let [p, q, r] = self.corners.map(|corner| vertices[corner].w - point);
+        let double_area = (q - p).cross(r - p).dot(self.normal);
+        [q.cross(r), r.cross(p), p.cross(q)].map(|part| part.dot(self.normal) / double_area)
     }
 }
 
-/// Replaces all facets that see the last vertex. Says whether there were any.
+/// Replaces all facets that see the last vertex. Says whether the polytope is still whole: rounding may tear a needle's,
+/// and what was the nearest facet until then must do.
 fn grow(facets: &mut Vec<Facet>, vertices: &[Vertex]) -> bool {
     let newest = vertices.len() - 1;
     let point = vertices[newest].w;
+    // The edges between what sees the vertex and what does not.
     let mut horizon: Vec<[usize; 2]> = Vec::new();
-    let before = facets.len();
     facets.retain(|facet| {
-        let sees = if facet.distance.is_finite() {
-            facet.normal.dot(point) - facet.distance > 1.0e-12
-        } else {
-            // A sliver goes with the neighbours that it is nearly an edge of.
-            false
-        };
+        // A sliver never sees it; its neighbours grow around it.
+        let sees = facet.distance.is_finite() && facet.normal.dot(point) - facet.distance > SEEN;
         if sees {
             for k in 0..3 {
                 let (from, to) = (facet.corners[k], facet.corners[(k + 1) % 3]);
@@ -101,8 +123,14 @@ fn grow(facets: &mut Vec<Facet>, vertices: &[Vertex]) -> bool {
         }
         !sees
     });
+    // A whole horizon is one loop: every corner begins one edge of it.
+    let torn =
+        horizon.iter().enumerate().any(|(k, edge)| horizon[..k].iter().any(|other| other[0] == edge[0]));
+    if torn {
+        return false;
+    }
     facets.extend(horizon.iter().map(|&[from, to]| Facet::new([from, to, newest], vertices)));
-    facets.len() != before || !horizon.is_empty()
+    !horizon.is_empty()
 }
 
 /// Four vertices around the origin with a volume, counter-clockwise facets as listed by the caller.

@@ -37,16 +37,27 @@ enum Core<'a> {
 }
 
 impl<'a> Solid<'a> {
-    /// A capsule, cuboid, cylinder or hull, seen from `origin`; none for other shapes.
+    /// A convex shape, seen from `origin`; none for others.
     pub(super) fn new(shape: &'a Shape, pose: &Pose, origin: Vec3) -> Option<Self> {
         let (core, radius) = match shape {
+            Shape::Sphere(s) => (Core::Segment { half_height: 0.0 }, s.radius),
             Shape::Capsule(c) => (Core::Segment { half_height: c.half_height }, c.radius),
             Shape::Cuboid(c) => (Core::Cuboid { half_extents: c.half_extents }, 0.0),
             Shape::Cylinder(c) => (Core::Cylinder { half_height: c.half_height, radius: c.radius }, 0.0),
             Shape::Hull(hull) => (Core::Hull(hull), 0.0),
-            Shape::Sphere(_) | Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
+            Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
         };
         Some(Solid { core, centre: pose.position - origin, axes: pose.axes(), radius })
+    }
+
+    /// Where its frame is.
+    pub(super) fn centre(&self) -> Vec3 {
+        self.centre
+    }
+
+    /// Puts its frame elsewhere.
+    pub(super) fn place(&mut self, centre: Vec3) {
+        self.centre = centre;
     }
 
     /// Polyhedra first, then cylinders, then capsules: whose faces are preferred.
@@ -181,7 +192,10 @@ impl<'a> Solid<'a> {
                 let drum = Drum { centre: self.centre, axis: self.axes.y_axis, half_height, radius };
                 match drum.lowest(down, hint) {
                     Lowest::Side(ends) => ends.to_vec(),
-                    Lowest::Cap(rim) => between_too(rim, drum.cap(down).0),
+                    // Nearer to the lowest point than a quarter turn there are none: a coin that rolls on its rim would
+                    // be stopped by the next of them, which comes down in an arc and not as straight as it seems.
+                    Lowest::TiltedCap(rim) => rim.to_vec(),
+                    Lowest::FlatCap(rim) => between_too(rim, drum.cap(down).0),
                 }
             }
             Core::Cuboid { .. } | Core::Hull(_) => {

@@ -2,6 +2,7 @@
 //!
 //! Promise: a look-up is a pure function of the field and the point, with the same bits on every target, and never
 //! panics, whatever the point (not-a-number gives not-a-number).
+#![allow(clippy::needless_range_loop, reason = "counted loops over fixed arrays are what vectorises")]
 
 use super::lanes::{Lanes, Lanes3, WIDTH};
 use crate::{Aabb, Vec3};

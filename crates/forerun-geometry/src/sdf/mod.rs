@@ -2,7 +2,7 @@
 //!
 //! A mesh is looked at in two ways: as a *field* (how far is this point from the surface, and which way is out) and as
 //! *samples* (points of its surface). Contact looks the samples of one shape up in the field of the other, both ways;
-//! see [`crate::contact::mesh`].
+//! see [`crate::contact`].
 
 use crate::Vec3;
 use crate::shape::Mesh;
@@ -16,7 +16,7 @@ mod pseudo_normals;
 mod samples;
 
 pub use field::Field;
-pub use samples::Samples;
+pub use samples::{Sample, Samples};
 
 use nearest::Skin;
 use pseudo_normals::{EdgeKind, PseudoNormals};
@@ -59,26 +59,25 @@ impl MeshCollider {
 
 /// The vertices, and points along ridges and boundaries no further apart than the thickness of the mesh (of an open
 /// one, which has none, a quarter of their mean length): where the edges of two frames cross, no vertex is near.
-fn sample_points(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Vec3> {
-    let mut points = mesh.vertices.clone();
-    let sharp: Vec<[Vec3; 2]> = normals
-        .edges
-        .iter()
-        .zip(&normals.edge_kinds)
-        .filter(|(_, kind)| matches!(kind, EdgeKind::Ridge | EdgeKind::Boundary))
-        .map(|(edge, _)| edge.map(|v| mesh.vertices[v as usize]))
+fn sample_points(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Sample> {
+    let vertices = mesh.vertices.iter().zip(&normals.vertex_normals);
+    let mut samples: Vec<Sample> =
+        vertices.map(|(point, normal)| Sample { point: *point, normal: *normal }).collect();
+    let sharp: Vec<([Vec3; 2], Vec3)> = (0..normals.edges.len())
+        .filter(|e| matches!(normals.edge_kinds[*e], EdgeKind::Ridge | EdgeKind::Boundary))
+        .map(|e| (normals.edges[e].map(|v| mesh.vertices[v as usize]), normals.edge_normals[e]))
         .collect();
-    let total = sharp.iter().map(|[a, b]| a.distance(*b)).sum::<f32>();
+    let total = sharp.iter().map(|([a, b], _)| a.distance(*b)).sum::<f32>();
     let wished = if mesh.closed {
         2.0 * mesh.half_thickness()
     } else {
         total / (OPEN_EDGE_PARTS * sharp.len().max(1) as f32)
     };
     let spacing = wished.max(total / EDGE_SAMPLES_MAX);
-    for [a, b] in sharp {
-        // No parts, and no points, where the spacing is 0: there is no edge then.
+    for ([a, b], normal) in sharp {
         let parts = (a.distance(b) / spacing).ceil() as u32;
-        points.extend((1..parts).map(|k| a + (b - a) * (k as f32 / parts as f32)));
+        let point = |k: u32| a + (b - a) * (k as f32 / parts as f32);
+        samples.extend((1..parts).map(|k| Sample { point: point(k), normal }));
     }
-    points
+    samples
 }

@@ -5,7 +5,7 @@
 
 use super::Field;
 use super::lanes::{Lanes, Lanes3, WIDTH};
-use super::nearest::Skin;
+use super::nearest::{Nearest, Skin};
 use crate::Vec3;
 use crate::shape::{Capsule, Cuboid, Cylinder, Hull};
 
@@ -63,9 +63,13 @@ impl Surface<'_> {
     }
 
     /// Signed distance and gradient at one point; in a field from the triangles of its mesh, exact at any distance.
-    pub(crate) fn exact(&self, p: Vec3, skin: Option<&Skin<'_>>) -> (f32, Vec3) {
+    /// `guess` is for the next point close by.
+    pub(crate) fn exact(&self, p: Vec3, skin: Option<&Skin<'_>>, guess: &mut Option<Nearest>) -> (f32, Vec3) {
         if let (Surface::Field(_), Some(skin)) = (self, skin) {
-            let signed = skin.look_up(p);
+            let point = p.as_dvec3();
+            let nearest = skin.nearest(point, guess.as_ref());
+            *guess = Some(nearest);
+            let signed = skin.signed(point, &nearest);
             return (signed.distance as f32, signed.gradient);
         }
         let (d, g) = self.look_up(Lanes3::splat(p));

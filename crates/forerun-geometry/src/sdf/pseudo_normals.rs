@@ -97,8 +97,7 @@ fn edge_normals(mesh: &Mesh, triangle_edges: &[[u32; 3]], edges: usize) -> (Vec<
     let mut balance = vec![0_i32; edges];
     for (t, (corners, edges)) in mesh.triangles.iter().zip(triangle_edges).enumerate() {
         let normal = face_normal(mesh, t);
-        for k in 0..3 {
-            let edge = edges[k] as usize;
+        for (k, edge) in edges.map(|e| e as usize).into_iter().enumerate() {
             sums[edge] += normal;
             counts[edge] += 1;
             balance[edge] += if corners[k] < corners[(k + 1) % 3] { 1 } else { -1 };
@@ -127,8 +126,7 @@ fn edge_normals(mesh: &Mesh, triangle_edges: &[[u32; 3]], edges: usize) -> (Vec<
 fn apex_heights(mesh: &Mesh, triangle_edges: &[[u32; 3]], edge_normals: &[Vec3]) -> Vec<f32> {
     let mut heights = vec![0.0; edge_normals.len()];
     for (corners, edges) in mesh.triangles.iter().zip(triangle_edges) {
-        for k in 0..3 {
-            let edge = edges[k] as usize;
+        for (k, edge) in edges.map(|e| e as usize).into_iter().enumerate() {
             let [from, apex] = [k, (k + 2) % 3].map(|c| mesh.vertices[corners[c] as usize]);
             heights[edge] += edge_normals[edge].dot(apex - from);
         }

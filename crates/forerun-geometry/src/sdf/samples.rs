@@ -5,11 +5,22 @@
 use super::lanes::{Lanes, Lanes3, WIDTH};
 use crate::Vec3;
 
-/// Points of a surface in leaves of 8, the leaves in nodes of 8.
+/// A point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Where it is. Metres.
+    pub point: Vec3,
+    /// Outward unit normal: at an edge or corner the mean of those around.
+    pub normal: Vec3,
+}
+
+/// Samples in leaves of 8, the leaves in nodes of 8.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     /// The points of leaf k; the last leaf repeats its last point.
     points: Vec<Lanes3>,
+    /// Their normals.
+    normals: Vec<Lanes3>,
     /// Spheres around the leaves: lane l of block k is leaf 8 k + l.
     leaves: Vec<Spheres>,
     /// Spheres around the blocks of leaves: lane l of block k is leaf block 8 k + l.
@@ -26,16 +37,17 @@ pub(crate) struct Spheres {
 }
 
 impl Samples {
-    /// Sorts the points into the hierarchy.
-    pub(crate) fn new(mut points: Vec<Vec3>) -> Samples {
-        sort_by_place(&mut points);
-        let leaves: Vec<&[Vec3]> = points.chunks(WIDTH).collect();
-        let nodes: Vec<&[Vec3]> = points.chunks(WIDTH * WIDTH).collect();
+    /// Sorts the samples into the hierarchy.
+    pub(crate) fn new(mut samples: Vec<Sample>) -> Samples {
+        sort_by_place(&mut samples);
+        let leaves: Vec<&[Sample]> = samples.chunks(WIDTH).collect();
+        let nodes: Vec<&[Sample]> = samples.chunks(WIDTH * WIDTH).collect();
         Samples {
-            points: leaves.iter().map(|leaf| block_of(leaf)).collect(),
+            points: leaves.iter().map(|leaf| block_of(leaf, |s| s.point)).collect(),
+            normals: leaves.iter().map(|leaf| block_of(leaf, |s| s.normal)).collect(),
             leaves: leaves.chunks(WIDTH).map(Spheres::around).collect(),
             nodes: nodes.chunks(WIDTH).map(Spheres::around).collect(),
-            count: points.len(),
+            count: samples.len(),
         }
     }
 
@@ -45,21 +57,24 @@ impl Samples {
         self.count
     }
 
-    /// The points, in the order of the hierarchy. Metres.
-    pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
-        (0..self.count).map(|i| self.points[i / WIDTH].lane(i % WIDTH))
+    /// The samples, in the order of the hierarchy.
+    pub fn iter(&self) -> impl Iterator<Item = Sample> + '_ {
+        (0..self.count).map(|i| Sample {
+            point: self.points[i / WIDTH].lane(i % WIDTH),
+            normal: self.normals[i / WIDTH].lane(i % WIDTH),
+        })
     }
 
     /// Memory that the points and spheres take.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.points) + size_of_val(&*self.leaves) + size_of_val(&*self.nodes)
+        2 * size_of_val(&*self.points) + size_of_val(&*self.leaves) + size_of_val(&*self.nodes)
     }
 
-    /// Calls `visit` with eight points, and the bits of those that are meant, for every leaf that `near` lets through:
+    /// Calls `visit` with eight points, their normals and the bits of those that are meant, for every leaf that `near` lets through:
     /// it is asked about eight spheres at a time and answers with the bits of those that are near enough.
     #[inline]
-    pub(crate) fn visit(&self, near: impl Fn(&Spheres) -> u32, mut visit: impl FnMut(&Lanes3, u32)) {
+    pub(crate) fn visit(&self, near: impl Fn(&Spheres) -> u32, mut visit: impl FnMut(&Lanes3, &Lanes3, u32)) {
         for (block, nodes) in self.nodes.iter().enumerate() {
             let mut node_bits = near(nodes);
             while node_bits != 0 {
@@ -70,7 +85,7 @@ impl Samples {
                     let leaf = node * WIDTH + leaf_bits.trailing_zeros() as usize;
                     leaf_bits &= leaf_bits - 1;
                     let meant = (self.count - leaf * WIDTH).min(WIDTH);
-                    visit(&self.points[leaf], (1_u32 << meant) - 1);
+                    visit(&self.points[leaf], &self.normals[leaf], (1_u32 << meant) - 1);
                 }
             }
         }
@@ -78,14 +93,14 @@ impl Samples {
 }
 
 impl Spheres {
-    /// The spheres around up to eight groups of points.
-    fn around(groups: &[&[Vec3]]) -> Spheres {
+    /// The spheres around up to eight groups of samples.
+    fn around(groups: &[&[Sample]]) -> Spheres {
         let mut spheres = Spheres { centre: Lanes3::ZERO, radius: Lanes::splat(f32::NEG_INFINITY) };
         for (i, group) in groups.iter().enumerate() {
-            let min = group.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
-            let max = group.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
+            let min = group.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
+            let max = group.iter().fold(Vec3::NEG_INFINITY, |m, s| m.max(s.point));
             let centre = (min + max) * 0.5;
-            let radius = group.iter().fold(0.0_f32, |r, p| r.max(p.distance(centre)));
+            let radius = group.iter().fold(0.0_f32, |r, s| r.max(s.point.distance(centre)));
             spheres.centre.set_lane(i, centre);
             // A little more, for what the sums below may lose.
             spheres.radius.0[i] = radius * 1.0001 + 1e-6;
@@ -94,30 +109,30 @@ impl Spheres {
     }
 }
 
-fn block_of(leaf: &[Vec3]) -> Lanes3 {
+fn block_of(leaf: &[Sample], part: impl Fn(&Sample) -> Vec3) -> Lanes3 {
     let mut block = Lanes3::ZERO;
     for i in 0..WIDTH {
-        block.set_lane(i, leaf[i.min(leaf.len() - 1)]);
+        block.set_lane(i, part(&leaf[i.min(leaf.len() - 1)]));
     }
     block
 }
 
-/// Sorts points so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
-fn sort_by_place(points: &mut [Vec3]) {
-    if points.len() <= WIDTH {
+/// Sorts samples so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
+fn sort_by_place(samples: &mut [Sample]) {
+    if samples.len() <= WIDTH {
         return;
     }
-    let min = points.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
-    let max = points.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
+    let min = samples.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
+    let max = samples.iter().fold(Vec3::NEG_INFINITY, |m, s| m.max(s.point));
     let axis = (max - min).max_position();
-    let key = |p: &Vec3| [p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]];
-    points.sort_by(|a, b| {
+    let key = |s: &Sample| [s.point[axis], s.point[(axis + 1) % 3], s.point[(axis + 2) % 3]];
+    samples.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
     });
-    let leaf_or_node = if points.len() > WIDTH * WIDTH { WIDTH * WIDTH } else { WIDTH };
-    let half = (points.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
-    let (low, high) = points.split_at_mut(half);
+    let leaf_or_node = if samples.len() > WIDTH * WIDTH { WIDTH * WIDTH } else { WIDTH };
+    let half = (samples.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
+    let (low, high) = samples.split_at_mut(half);
     sort_by_place(low);
     sort_by_place(high);
 }

@@ -4,8 +4,8 @@ use super::{Capsule, Cylinder, Shape};
 use crate::{Aabb, Pose, Vec3};
 
 impl Shape {
-    /// An axis-aligned box around the shape at `pose`: the smallest one, but for meshes (the box around their turned box, cut
-    /// to their sphere) and half-spaces (infinite, but for the side they face along an axis).
+    /// An axis-aligned box around the shape at `pose`: the smallest one, but for turned meshes (a little larger) and half-spaces
+    /// (infinite, but for the side they face along an axis).
     #[must_use]
     pub fn aabb(&self, pose: &Pose) -> Aabb {
         match self {
@@ -81,7 +81,7 @@ impl Shape {
 }
 
 /// Half extents of the smallest axis-aligned box around a turned one.
-pub(super) fn turned_extents(pose: &Pose, half_extents: Vec3) -> Vec3 {
+fn turned_extents(pose: &Pose, half_extents: Vec3) -> Vec3 {
     let m = pose.axes();
     m.x_axis.abs() * half_extents.x + m.y_axis.abs() * half_extents.y + m.z_axis.abs() * half_extents.z
 }

@@ -4,8 +4,8 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::measure::turned_extents;
-use super::mesh_topology::{check_edges, drop_degenerate, drop_unused, weld_equal};
+use super::mesh_topology::{check_edges, drop_degenerate, drop_unused, recut_slivers, weld_equal};
+use super::reach::Reach;
 use super::triangle_tree::TriangleTree;
 use crate::sdf::MeshCollider;
 use crate::{Aabb, Pose, Vec3};
@@ -25,7 +25,7 @@ pub struct Mesh {
     /// What was mended when it was made.
     pub repairs: MeshRepairs,
     bounds: Aabb,
-    radius: f32,
+    reach: Reach,
     half_thickness: f32,
     tree: TriangleTree,
     collider: MeshCollider,
@@ -40,6 +40,8 @@ pub struct MeshRepairs {
     pub unused_vertices: u32,
     /// Triangles that were left out because two of their corners are the same or all three lie in a line.
     pub dropped_triangles: u32,
+    /// Triangles with their corners in a line that were cut anew together with a neighbour, so that the mesh stays closed.
+    pub recut_triangles: u32,
     /// Whether all triangles faced inwards and were turned round.
     pub turned: bool,
 }
@@ -63,6 +65,9 @@ impl fmt::Display for MeshRepairs {
         }
         if self.dropped_triangles > 0 {
             notes.push(format!("{} degenerate triangles left out", self.dropped_triangles));
+        }
+        if self.recut_triangles > 0 {
+            notes.push(format!("{} triangles with their corners in a line cut anew", self.recut_triangles));
         }
         if self.turned {
             notes.push("all triangles faced inwards and were turned round".to_owned());
@@ -173,7 +178,8 @@ impl std::error::Error for MeshError {}
 impl Mesh {
     /// A closed mesh, the surface of a solid; several shells are fine, and cavities are shells that face inwards.
     ///
-    /// Mended and noted in [`Mesh::repairs`]: duplicate vertices, unused vertices, degenerate triangles, and triangles that all face inwards.
+    /// Mended and noted in [`Mesh::repairs`]: duplicate vertices, unused vertices, degenerate triangles, and triangles that all
+    /// face inwards.
     ///
     /// # Errors
     /// When a number is not finite, an index is out of range, the surface is not closed and consistently wound, or it encloses no
@@ -214,21 +220,11 @@ impl Mesh {
     /// An open mesh that nothing touches yet.
     fn assemble(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, repairs: MeshRepairs) -> Mesh {
         let bounds = Aabb::around(vertices.iter().copied());
-        let centre = bounds.centre();
-        let radius = vertices.iter().map(|v| v.distance(centre)).fold(0.0, f32::max);
+        let reach = Reach::of(&vertices);
         let tree = TriangleTree::new(&vertices, &triangles);
         let collider = MeshCollider::default();
-        Mesh {
-            vertices,
-            triangles,
-            closed: false,
-            repairs,
-            bounds,
-            radius,
-            half_thickness: 0.0,
-            tree,
-            collider,
-        }
+        let (closed, half_thickness) = (false, f32::INFINITY);
+        Mesh { vertices, triangles, closed, repairs, bounds, reach, half_thickness, tree, collider }
     }
 
     /// The box around the vertices, in the mesh's frame.
@@ -260,16 +256,15 @@ impl Mesh {
     }
 
     /// Half of the smallest thickness: from triangle middles straight through to the other side, but for the thinnest twentieth of the
-    /// surface, as sharp edges are thin without end. 0 for open meshes. Metres.
+    /// surface, as sharp edges are thin without end. Infinite for open meshes: what passes a sheet is told by the
+    /// thickness of the other body alone. Metres.
     #[must_use]
     pub fn half_thickness(&self) -> f32 {
         self.half_thickness
     }
 
     pub(super) fn aabb(&self, pose: &Pose) -> Aabb {
-        let centre = pose.transform_point(self.bounds.centre());
-        let reach = turned_extents(pose, self.bounds.half_extents()).min(Vec3::splat(self.radius));
-        Aabb::from_centre(centre, reach)
+        self.reach.aabb(pose)
     }
 }
 
@@ -286,6 +281,7 @@ fn clean(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Parts, Mes
         }
     }
     let welded_vertices = weld_equal(&vertices, &mut triangles);
+    let recut_triangles = recut_slivers(&vertices, &mut triangles);
     let dropped_triangles = drop_degenerate(&vertices, &mut triangles);
     if triangles.is_empty() {
         return Err(MeshError::Empty { dropped: dropped_triangles });
@@ -296,7 +292,7 @@ fn clean(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Parts, Mes
     Ok((
         vertices,
         triangles,
-        MeshRepairs { welded_vertices, unused_vertices, dropped_triangles, turned: false },
+        MeshRepairs { welded_vertices, unused_vertices, dropped_triangles, recut_triangles, turned: false },
     ))
 }
 

@@ -1,7 +1,12 @@
 //! Mending and checking how the triangles of a mesh hang together.
 
+use std::collections::BTreeMap;
+
 use super::MeshError;
 use crate::Vec3;
+
+/// How often slivers beside slivers are taken up again.
+const SLIVER_ROUNDS: usize = 16;
 
 /// Makes triangles name the first of the vertices at exactly the same position. Returns how many *used* vertices were merged away.
 pub(super) fn weld_equal(vertices: &[Vec3], triangles: &mut [[u32; 3]]) -> u32 {
@@ -28,13 +33,65 @@ pub(super) fn weld_equal(vertices: &[Vec3], triangles: &mut [[u32; 3]]) -> u32 {
     merged.len() as u32
 }
 
+/// Replaces triangles whose corners lie in a line: together with the neighbour at the long edge they are cut the other way, into two
+/// triangles with an area. Leaving them out would open the mesh. Returns how many.
+pub(super) fn recut_slivers(vertices: &[Vec3], triangles: &mut [[u32; 3]]) -> u32 {
+    let mut recut = 0;
+    for _ in 0..SLIVER_ROUNDS {
+        let slivers: Vec<usize> =
+            (0..triangles.len()).filter(|&t| is_sliver(vertices, triangles[t])).collect();
+        if slivers.is_empty() {
+            break;
+        }
+        let mut owner = BTreeMap::new();
+        for (t, &[a, b, c]) in triangles.iter().enumerate() {
+            owner.extend([((a, b), t), ((b, c), t), ((c, a), t)]);
+        }
+        let mut touched = vec![false; triangles.len()];
+        for sliver in slivers {
+            let [a, b, c] = longest_edge_last(vertices, triangles[sliver]);
+            let Some(&neighbour) = owner.get(&(a, c)) else {
+                continue;
+            };
+            let Some(&d) = triangles[neighbour].iter().find(|v| **v != a && **v != c) else {
+                continue;
+            };
+            if d == b || touched[sliver] || touched[neighbour] {
+                continue;
+            }
+            (triangles[sliver], triangles[neighbour]) = ([a, b, d], [b, c, d]);
+            (touched[sliver], touched[neighbour]) = (true, true);
+            recut += 1;
+        }
+    }
+    recut
+}
+
+/// Different corners, all in a line. Exact: of `f32` positions the products that cancel are exact in `f64`.
+fn is_sliver(vertices: &[Vec3], [a, b, c]: [u32; 3]) -> bool {
+    let [p, q, r] = [a, b, c].map(|i| vertices[i as usize].as_dvec3());
+    a != b && b != c && c != a && (q - p).cross(r - p).length_squared() <= 0.0
+}
+
+/// The same triangle, turned so that its longest edge leads from the third corner to the first.
+fn longest_edge_last(vertices: &[Vec3], triangle: [u32; 3]) -> [u32; 3] {
+    let length =
+        |i: u32, j: u32| vertices[i as usize].as_dvec3().distance_squared(vertices[j as usize].as_dvec3());
+    let [a, b, c] = triangle;
+    let (ab, bc, ca) = (length(a, b), length(b, c), length(c, a));
+    if ca >= ab && ca >= bc {
+        [a, b, c]
+    } else if ab >= bc {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
 /// Leaves out triangles without an area. Returns how many.
 pub(super) fn drop_degenerate(vertices: &[Vec3], triangles: &mut Vec<[u32; 3]>) -> u32 {
     let before = triangles.len();
-    triangles.retain(|&[a, b, c]| {
-        let [p, q, r] = [a, b, c].map(|i| vertices[i as usize].as_dvec3());
-        a != b && b != c && c != a && (q - p).cross(r - p).length_squared() > 0.0
-    });
+    triangles.retain(|&[a, b, c]| a != b && b != c && c != a && !is_sliver(vertices, [a, b, c]));
     (before - triangles.len()) as u32
 }
 

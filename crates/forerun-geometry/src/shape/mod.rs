@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::{Pose, Vec3};
 
+mod bounding;
 mod compound;
 mod hull;
 mod hull_faces;
@@ -14,6 +15,7 @@ mod mesh;
 pub mod mesh_make;
 mod mesh_ray;
 mod mesh_topology;
+mod reach;
 mod triangle_tree;
 
 pub use compound::Compound;

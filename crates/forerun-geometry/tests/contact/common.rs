@@ -147,7 +147,7 @@ impl Random {
 
     pub(crate) fn rotation(&mut self) -> Quat {
         let axis = self.direction();
-        turned(Vec3::ZERO, axis, self.between(0.0, 6.28)).rotation
+        turned(Vec3::ZERO, axis, self.between(0.0, std::f32::consts::TAU)).rotation
     }
 }
 
@@ -202,4 +202,24 @@ pub(crate) fn brute_separation(a: (&Shape, Pose), b: (&Shape, Pose)) -> (f32, Ve
         }
     }
     best.into_iter().fold((f32::NEG_INFINITY, Vec3::Y), |m, x| if x.0 > m.0 { x } else { m })
+}
+
+/// How far a point is from the surface of a shape: 0 on it. Exact inside and near faces and sides. A capsule counts as a
+/// ball that is drawn along its segment; the ball must touch the point with the given normal.
+pub(crate) fn off_surface(shape: &Shape, pose: &Pose, point: Vec3, normal: Vec3) -> f32 {
+    let p = pose.inverse_transform_point(point);
+    match shape {
+        Shape::HalfSpace => p.y,
+        Shape::Sphere(s) => p.length() - s.radius,
+        Shape::Capsule(c) => {
+            let centre = p - pose.inverse_transform_vector(normal) * c.radius;
+            (centre - Vec3::new(0.0, centre.y.clamp(-c.half_height, c.half_height), 0.0)).length()
+        }
+        Shape::Cuboid(c) => (p.abs() - c.half_extents).max_element(),
+        Shape::Cylinder(c) => (libm::sqrtf(p.x * p.x + p.z * p.z) - c.radius).max(p.y.abs() - c.half_height),
+        Shape::Hull(h) => {
+            h.faces.iter().map(|face| face.normal.dot(p) - face.offset).fold(f32::NEG_INFINITY, f32::max)
+        }
+        other => panic!("{other:?} has no surface here"),
+    }
 }

@@ -218,6 +218,39 @@ fn a_coin_rolling_on_its_rim_has_its_exact_lowest_point() {
 }
 
 #[test]
+fn a_coin_shows_its_cap_until_it_nearly_stands() {
+    let (coin, radius, tilt) = (cylinder(0.0005, 0.0375), 0.0375, 1.0_f32);
+    let (sine, cosine) = libm::sincosf(tilt);
+    for (ground, pose) in [(Shape::HalfSpace, Pose::IDENTITY), (cuboid(1.0, 0.5, 1.0), at(0.0, -0.5, 0.0))] {
+        let placed = turned(v(0.0, 0.0005 * cosine + radius * sine, 0.0), Vec3::Z, tilt);
+        let found = manifolds((&ground, pose), (&coin, placed), 0.1);
+        let mut separations: Vec<f32> = found[0].points().iter().map(|point| point.separation).collect();
+        separations.sort_by(f32::total_cmp);
+        // The lowest point of the rim, the two beside it, and perhaps the one opposite.
+        let expected = [0.0, radius * sine, radius * sine, 2.0 * radius * sine];
+        assert!(separations.len() >= 3, "{ground:?}: {separations:?}");
+        for (separation, expected) in separations.iter().zip(expected) {
+            assert!((separation - expected).abs() < 1.0e-5, "{ground:?}: {separations:?}");
+        }
+    }
+}
+
+#[test]
+fn drums_of_one_radius_stack_on_four_points() {
+    let drum = cylinder(0.5, 0.4);
+    for heading in [0.0, 0.2, 0.5, 1.0, 2.0] {
+        let above = turned(v(0.0, 0.999, 0.0), Vec3::Y, heading);
+        let found = manifolds((&drum, Pose::IDENTITY), (&drum, above), 0.02);
+        assert_eq!(found[0].count, 4, "{heading}");
+        for point in found[0].points() {
+            assert!((point.separation + 0.001).abs() < 1.0e-5);
+            let from_axis = v(point.position.x, 0.0, point.position.z).length();
+            assert!(from_axis > 0.35 && from_axis < 0.401, "{heading}: {point:?}");
+        }
+    }
+}
+
+#[test]
 fn two_logs_side_by_side_touch_in_two_points() {
     let log = cylinder(1.0, 0.25);
     let lie = |x: f32, y: f32| turned(v(0.0, y, x), Vec3::Z, QUARTER);

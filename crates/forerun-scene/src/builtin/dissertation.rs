@@ -16,8 +16,10 @@ const TIP_SPEED: f32 = 6.0;
 
 /// A row of dominoes along a spiral from the inside out; the first one topples.
 pub(super) fn dominoes(count: u32) -> Scene {
-    let mut scene =
-        Scene::new("dominoes", "Dominoes in a spiral; the innermost is tipped over and the wave runs outwards.");
+    let mut scene = Scene::new(
+        "dominoes",
+        "Dominoes in a spiral; the innermost is tipped over and the wave runs outwards.",
+    );
     scene.seconds = 30.0;
     scene.put(ground());
     let mut spiral = Spiral::new();
@@ -99,8 +101,10 @@ pub(super) fn interaction(count: u32) -> Scene {
 
 /// Rings and knots of some 5000 triangles each fall into a pit.
 pub(super) fn meshes(count: u32) -> Scene {
-    let mut scene =
-        Scene::new("meshes", "Rings and knotted tubes of about 5000 triangles each fall into a pit, as they are.");
+    let mut scene = Scene::new(
+        "meshes",
+        "Rings and knotted tubes of about 5000 triangles each fall into a pit, as they are.",
+    );
     let knot = |p, q, segments| {
         MeshEntry::torus_knot(TorusKnotEntry {
             p,

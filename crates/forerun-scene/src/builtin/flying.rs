@@ -52,7 +52,8 @@ pub(super) fn a09d(_: u32) -> Scene {
 
 /// A ball hits `target` 0.4 m off its centre.
 fn off_centre(name: &str, target: BodyEntry) -> Scene {
-    let mut scene = Scene::new(name, "A ball hits a free body off its centre: momentum and angular momentum stay.");
+    let mut scene =
+        Scene::new(name, "A ball hits a free body off its centre: momentum and angular momentum stay.");
     scene.put(target.named("target").of_mass(2.0).surface(0.0, 0.5));
     let ball = sphere(0.1).named("ball").of_mass(1.0).surface(0.0, 0.5);
     scene.put(ball.at(Vec3::new(0.4, -0.25, 0.0)).moving(Vec3::Y * 2.0));
@@ -97,7 +98,8 @@ pub(super) fn a12b(_: u32) -> Scene {
 pub(super) fn a16a(tilt: u32) -> Scene {
     const RADIUS: f32 = 0.0375;
     const HALF_THICKNESS: f32 = 0.0005;
-    let mut scene = Scene::new("a16a", "A tilted disc rolls round on its rim at a steady rate (Euler's disc).");
+    let mut scene =
+        Scene::new("a16a", "A tilted disc rolls round on its rim at a steady rate (Euler's disc).");
     scene.put(ground().surface(0.8, 0.0));
     let angle = radians(tilt as f32);
     let (sin, cos) = libm::sincosf(angle);

@@ -46,19 +46,44 @@ const TILT: (u32, u32, &str) = (4, 10, "tilts of 4.5 degrees");
 
 static BUILT_INS: &[BuiltIn] = &[
     sized("dominoes", (255, 100_000, "dominoes"), "Dominoes in a spiral", dissertation::dominoes),
-    sized("meshes", (60, 10_000, "meshes"), "Rings and knotted tubes of about 5000 triangles", dissertation::meshes),
-    sized("interaction", (255, 100_000, "dominoes"), "Dominoes, and a ball at 10 s", dissertation::interaction),
+    sized(
+        "meshes",
+        (60, 10_000, "meshes"),
+        "Rings and knotted tubes of about 5000 triangles",
+        dissertation::meshes,
+    ),
+    sized(
+        "interaction",
+        (255, 100_000, "dominoes"),
+        "Dominoes, and a ball at 10 s",
+        dissertation::interaction,
+    ),
     sized("stack", (20, 10_000, "boxes"), "A stack of boxes, dropped from 0.1 m", dissertation::stack),
     sized("pyramid", (30, 500, "boxes in the lowest row"), "A pyramid of boxes", piles::pyramid),
-    sized("large_pyramid", (100, 500, "boxes in the lowest row"), "The same, one island of 5050", piles::large_pyramid),
-    sized("many_pyramids", (196, 10_000, "pyramids"), "Pyramids of 55 boxes that never meet", piles::many_pyramids),
+    sized(
+        "large_pyramid",
+        (100, 500, "boxes in the lowest row"),
+        "The same, one island of 5050",
+        piles::large_pyramid,
+    ),
+    sized(
+        "many_pyramids",
+        (196, 10_000, "pyramids"),
+        "Pyramids of 55 boxes that never meet",
+        piles::many_pyramids,
+    ),
     sized("islands", (100, 10_000, "piles"), "Piles of 100 boxes that never meet", piles::islands),
     sized("rain", (1000, 100_000, "bodies"), "Balls, boxes and capsules fall into a pit", piles::rain),
     sized("rings", (500, 5000, "rings"), "Rings fall over 25 poles", piles::rings),
     sized("tori", (50, 10_000, "rings"), "Rings of 1536 triangles fall on a heap", piles::tori),
     sized("cradle", (5, 1000, "balls"), "A row of elastic balls between two walls", structures::cradle),
     single("slope", "Blocks of different friction on a ramp", structures::slope),
-    sized("capstone", (300, 100_000, "masses of a cube"), "Heavy cubes fall on pyramids of light ones", structures::capstone),
+    sized(
+        "capstone",
+        (300, 100_000, "masses of a cube"),
+        "Heavy cubes fall on pyramids of light ones",
+        structures::capstone,
+    ),
     single("arch", "An arch of 17 wedges that carries 4 boxes", structures::arch),
     single("plank", "A plank over an edge becomes a catapult", structures::plank),
     sized("kapla", (6, 100, "floors"), "A tower of loose blocks, 17 a floor", structures::kapla),
@@ -105,9 +130,8 @@ pub fn list() -> &'static [BuiltIn] {
 /// # Errors
 /// When there is no such scene, or not of this size; the message lists what there is.
 pub fn scene(name_and_size: &str) -> Result<Scene, SceneError> {
-    let fault = |message: String, remedy: String| {
-        Source::named(name_and_size).error(Fault::new(message, remedy))
-    };
+    let fault =
+        |message: String, remedy: String| Source::named(name_and_size).error(Fault::new(message, remedy));
     let (name, size) = match name_and_size.split_once(':') {
         Some((name, size)) => (name, Some(size)),
         None => (name_and_size, None),
@@ -128,7 +152,9 @@ pub fn scene(name_and_size: &str) -> Result<Scene, SceneError> {
             let size = text.parse().ok().filter(|size| (1..=built_in.size_max).contains(size));
             size.ok_or_else(|| {
                 let (most, counts) = (built_in.size_max, built_in.size_counts);
-                let message = format!("the size of {name} is a whole number from 1 to {most} ({counts}), is \"{text}\"");
+                let message = format!(
+                    "the size of {name} is a whole number from 1 to {most} ({counts}), is \"{text}\""
+                );
                 fault(message, format!("for example {name}:{default}"))
             })?
         }

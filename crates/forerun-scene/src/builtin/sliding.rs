@@ -6,7 +6,7 @@ use forerun_geometry::{Quat, Vec3};
 
 use super::parts::{Incline, cube, cylinder, ground, mesh, radians, sphere, turn};
 use crate::command_entry::VelocityEntry;
-use crate::mesh::SphereMeshEntry;
+use crate::mesh::BallEntry;
 use crate::{BodyEntry, BodyRef, CommandEntry, KindEntry, MeshEntry, Scene};
 
 /// The frame at which these cases are judged.
@@ -28,7 +28,8 @@ pub(super) fn a01b(_: u32) -> Scene {
 }
 
 fn block_on_slope(name: &str, friction: f32, speed: f32) -> Scene {
-    let mut scene = Scene::new(name, "A block slides down a slope of 20 degrees; restitution 1 must not make it hop.");
+    let mut scene =
+        Scene::new(name, "A block slides down a slope of 20 degrees; restitution 1 must not make it hop.");
     let incline = Incline::new(radians(20.0));
     scene.put(plane(&incline, friction, 1.0));
     let block = cube(0.05).named("block").of_mass(1.0).surface(friction, 1.0);
@@ -82,11 +83,10 @@ pub(super) fn a04d(tilt: u32) -> Scene {
     rolling("a04d", tilt, (sphere(1.0).of_mass(1.0), 0.05))
 }
 
-/// A ball of 2500 triangles rolls.
+/// A ball of 2420 triangles rolls.
 pub(super) fn a04e(tilt: u32) -> Scene {
     let mut scene = rolling("a04e", tilt, (mesh("ball").of_mass(1.0), 1.0));
-    let ball = SphereMeshEntry { radius: 1.0, segments: 50, rings: 26 };
-    scene.meshes.insert("ball".to_owned(), MeshEntry::sphere(ball));
+    scene.meshes.insert("ball".to_owned(), MeshEntry::ball(BallEntry { radius: 1.0, parts: 11 }));
     scene
 }
 
@@ -111,7 +111,8 @@ pub(super) fn a06a(_: u32) -> Scene {
 
 /// A spinning cube is braked by friction at its face, and stays in its place.
 pub(super) fn a06b(_: u32) -> Scene {
-    let mut scene = Scene::new("a06b", "A cube spins on its face and is braked: 4.90 rad/s are left after 1 s.");
+    let mut scene =
+        Scene::new("a06b", "A cube spins on its face and is braked: 4.90 rad/s are left after 1 s.");
     // The geometric mean of 0.2 and 0.3 is the 0.244949 of the case.
     scene.put(ground().surface(0.2, 0.0));
     let block = cube(1.0).named("cube").surface(0.3, 0.0);
@@ -121,7 +122,8 @@ pub(super) fn a06b(_: u32) -> Scene {
 
 /// A cube on a disc whose spin grows by 0.05 rad/s²; it slips at sqrt(friction g / 1.5 m).
 fn turntable(name: &str, friction: f32, until: f32) -> Scene {
-    let mut scene = Scene::new(name, "A cube on a turntable slips when the turntable is too fast for its friction.");
+    let mut scene =
+        Scene::new(name, "A cube on a turntable slips when the turntable is too fast for its friction.");
     let disc = BodyEntry { kind: KindEntry::Kinematic, ..cylinder(2.0, 0.05) };
     scene.put(disc.named("turntable").surface(friction, 0.0).at(Vec3::Y * -0.05));
     scene.put(cube(0.125).named("cube").surface(friction, 0.0).at(Vec3::new(1.5, 0.125, 0.0)));

@@ -2,7 +2,7 @@
 
 use forerun_dynamics::{BodyDef, BodyKind};
 use forerun_geometry::Vec3;
-use forerun_geometry::shape::{Cuboid, Shape, Sphere};
+use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Shape, Sphere};
 
 /// All scenes and their names.
 pub(crate) fn all() -> Vec<(&'static str, Vec<BodyDef>)> {
@@ -67,15 +67,22 @@ pub(crate) fn dominoes() -> Vec<BodyDef> {
     bodies
 }
 
-/// Boxes and balls that fall in a heap, some through each other's way.
+/// Things of all simple shapes that fall in a heap on a half-space, some of them fast enough to pass through others in a frame.
 pub(crate) fn rain() -> Vec<BodyDef> {
-    let mut bodies = vec![ground()];
+    let mut bodies = vec![BodyDef::fixed(Shape::HalfSpace)];
     for i in 0..24 {
         let (x, y, z) = ((i % 3) as f32 * 0.7, 1.0 + 0.8 * (i / 3) as f32, (i % 2) as f32 * 0.6);
-        let shape = if i % 5 == 4 { Shape::Sphere(Sphere { radius: 0.3 }) } else { cuboid(0.3, 0.2, 0.25) };
+        let shape = match i % 5 {
+            2 => Shape::Capsule(Capsule { half_height: 0.2, radius: 0.15 }),
+            3 => Shape::Cylinder(Cylinder { half_height: 0.2, radius: 0.25 }),
+            4 => Shape::Sphere(Sphere { radius: 0.3 }),
+            _ => cuboid(0.3, 0.2, 0.25),
+        };
         let mut body = BodyDef::new(shape).at(Vec3::new(x, y, z));
-        body.velocity = Vec3::new(0.3 * (i % 4) as f32 - 0.4, -1.0, 0.2);
+        let fall = if i % 8 == 7 { -60.0 } else { -1.0 };
+        body.velocity = Vec3::new(0.3 * (i % 4) as f32 - 0.4, fall, 0.2);
         body.angular_velocity = Vec3::new(0.0, 1.0, 0.5 * (i % 3) as f32);
+        body.material.restitution = 0.25 * (i % 3) as f32;
         bodies.push(body);
     }
     bodies

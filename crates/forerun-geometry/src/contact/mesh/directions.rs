@@ -2,7 +2,7 @@
 
 use glam::Mat3;
 
-use super::{MOTION_AHEAD, Part};
+use super::{MOTION_AHEAD, NEAR};
 use crate::contact::Placed;
 use crate::sdf::Samples;
 use crate::sdf::nearest::Skin;
@@ -34,10 +34,10 @@ pub(super) struct Direction<'a> {
     pub(super) spin: Vec3,
     /// 1 if the field is the first shape's: its gradient then points to the second; -1 otherwise.
     pub(super) sign: f32,
-    /// Surfaces closer than this are near. Metres.
+    /// Points closer than this count, or that will be closer at the end of the step. Metres.
+    pub(super) near: f32,
+    /// Points farther than this do not count. Metres.
     pub(super) margin: f32,
-    /// Surfaces farther than this cannot meet in the step. Metres.
-    pub(super) reach: f32,
 }
 
 /// Points of a surface.
@@ -50,34 +50,25 @@ pub(super) enum Points<'a> {
     Round(Vec<RoundPoint>),
 }
 
-/// The directions of two parts: the points of the first in the field of the second, then the other way round.
-/// `limits` are margin and reach (metres).
-pub(super) fn between<'a>(
-    first: (&Placed, &Part<'a>),
-    second: (&Placed, &Part<'a>),
-    limits: [f32; 2],
-) -> Vec<Direction<'a>> {
-    let there = direction(first, second, limits, -1.0);
-    let back = direction(second, first, limits, 1.0);
+/// The directions of two shapes: the points of the first in the field of the second, then the other way round, as far
+/// as there are points and fields. `margin`: metres.
+pub(super) fn between<'a>(first: &Placed<'a>, second: &Placed<'a>, margin: f32) -> Vec<Direction<'a>> {
+    let there = direction(first, second, margin, -1.0);
+    let back = direction(second, first, margin, 1.0);
     there.into_iter().chain(back).collect()
 }
 
 /// Points of `sampled` in the field of `field`; none if `sampled` has no points.
-fn direction<'a>(
-    (sampled, sampled_part): (&Placed, &Part<'a>),
-    (field, field_part): (&Placed, &Part<'a>),
-    [margin, reach]: [f32; 2],
-    sign: f32,
-) -> Option<Direction<'a>> {
-    let to_field = field_part.pose.inverse() * sampled_part.pose;
-    let surface = surface_of(field_part.shape, 2.0 * sampled_part.shape.half_thickness())?;
-    let skin = if let Shape::Mesh(mesh) = field_part.shape { Some(Skin::of(mesh)) } else { None };
-    let points = match (sampled_part.shape, field_part.shape) {
+fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f32) -> Option<Direction<'a>> {
+    let to_field = field.pose.inverse() * sampled.pose;
+    let surface = surface_of(field.shape, 2.0 * sampled.shape.half_thickness())?;
+    let skin = if let Shape::Mesh(mesh) = field.shape { Some(Skin::of(mesh)) } else { None };
+    let points = match (sampled.shape, field.shape) {
         (Shape::Mesh(mesh), _) => Points::Mesh(&mesh.collider().samples),
         (shape, Shape::Mesh(mesh)) => {
-            let region = region_of(mesh, &to_field.inverse(), reach);
+            let region = region_of(mesh, &to_field.inverse(), margin);
             let gradient = |p: Vec3| {
-                let (_, g) = surface.exact(to_field.transform_point(p), None);
+                let (_, g) = surface.exact(to_field.transform_point(p), None, &mut None);
                 to_field.inverse_transform_vector(g)
             };
             points::of(shape, &region, gradient)?
@@ -87,22 +78,22 @@ fn direction<'a>(
     // Relative motion of points of the sampled shape, seen from the field, about the origin of the field's frame.
     let (s, f) = (&sampled.motion, &field.motion);
     let spin = s.angular - f.angular;
-    let at = field_part.pose.position;
+    let at = field.pose.position;
     let drift = s.linear + s.angular.cross(at - s.about) - f.linear - f.angular.cross(at - f.about);
-    let into_field = |v: Vec3| field_part.pose.inverse_transform_vector(v) * MOTION_AHEAD;
+    let into_field = |v: Vec3| field.pose.inverse_transform_vector(v) * MOTION_AHEAD;
     Some(Direction {
         points,
         surface,
         skin,
         axes: to_field.axes(),
         origin: to_field.position,
-        field_pose: field_part.pose,
-        field_axes: field_part.pose.axes(),
+        field_pose: field.pose,
+        field_axes: field.pose.axes(),
         drift: into_field(drift),
         spin: into_field(spin),
         sign,
+        near: NEAR.min(margin),
         margin,
-        reach,
     })
 }
 
@@ -123,9 +114,9 @@ fn surface_of(shape: &Shape, depth_limit: f32) -> Option<Surface<'_>> {
     })
 }
 
-/// The ball around a mesh, grown by `reach`, in the frame of the primitive.
-fn region_of(mesh: &Mesh, to_primitive: &Pose, reach: f32) -> Region {
+/// The ball around a mesh, grown by `margin`, in the frame of the primitive.
+fn region_of(mesh: &Mesh, to_primitive: &Pose, margin: f32) -> Region {
     let radius = mesh.collider().radius;
     let spacing = if mesh.closed { 2.0 * mesh.half_thickness() } else { radius };
-    Region { centre: to_primitive.position, radius: radius + reach, spacing }
+    Region { centre: to_primitive.position, radius: radius + margin, spacing }
 }

@@ -1,7 +1,7 @@
 //! Points of primitives that are looked up in the field of a mesh: corners, and points along edges and axes.
 
 use super::directions::Points;
-use crate::sdf::Samples;
+use crate::sdf::{Sample, Samples};
 use crate::shape::{Capsule, Cuboid, Cylinder, Hull};
 use crate::{Shape, Vec3};
 
@@ -59,35 +59,45 @@ fn capsule(c: &Capsule) -> Vec<RoundPoint> {
         .collect()
 }
 
-fn cuboid(c: &Cuboid, region: &Region, points: &mut Vec<Vec3>) {
-    let corner = |signs: u32| {
-        let sign = |axis: u32| if signs >> axis & 1 == 1 { 1.0 } else { -1.0 };
-        Vec3::new(sign(0), sign(1), sign(2)) * c.half_extents
-    };
+fn cuboid(c: &Cuboid, region: &Region, points: &mut Vec<Sample>) {
+    let sign = |signs: u32, axis: u32| if signs >> axis & 1 == 1 { 1.0 } else { -1.0 };
+    let corner = |signs: u32| Vec3::new(sign(signs, 0), sign(signs, 1), sign(signs, 2));
     let spacing = region.spacing.min(2.0 * c.half_extents.min_element());
     for signs in 0..8 {
-        vertex(corner(signs), region, points);
+        let from = corner(signs);
+        vertex(from * c.half_extents, from.normalize(), region, points);
         for axis in 0..3 {
             if signs >> axis & 1 == 0 {
-                edge([corner(signs), corner(signs | 1 << axis)], region, spacing, points);
+                let to = corner(signs | 1 << axis);
+                let ends = [from * c.half_extents, to * c.half_extents];
+                edge(ends, (from + to).normalize(), (region, spacing), points);
             }
         }
     }
 }
 
-fn hull_points(hull: &Hull, region: &Region, points: &mut Vec<Vec3>) {
-    for v in &hull.vertices {
-        vertex(*v, region, points);
-    }
+fn hull_points(hull: &Hull, region: &Region, points: &mut Vec<Sample>) {
+    let mut sums = vec![Vec3::ZERO; hull.vertices.len()];
     for e in &hull.edges {
-        edge(e.vertices.map(|v| hull.vertices[v as usize]), region, region.spacing, points);
+        let normal = e.faces.map(|f| hull.faces[f as usize].normal).iter().sum::<Vec3>();
+        for v in e.vertices {
+            sums[v as usize] += normal;
+        }
+        let ends = e.vertices.map(|v| hull.vertices[v as usize]);
+        edge(ends, normal.normalize_or_zero(), (region, region.spacing), points);
+    }
+    for (v, sum) in hull.vertices.iter().zip(sums) {
+        vertex(*v, sum.normalize_or_zero(), region, points);
     }
 }
 
 /// Fixed points around both rims, and the line down the side that faces the mesh.
-fn cylinder(c: &Cylinder, gradient: impl Fn(Vec3) -> Vec3, points: &mut Vec<Vec3>) {
-    for y in [-c.half_height, c.half_height] {
-        points.extend(RIM.map(|(x, z)| Vec3::new(x * c.radius, y, z * c.radius)));
+fn cylinder(c: &Cylinder, gradient: impl Fn(Vec3) -> Vec3, points: &mut Vec<Sample>) {
+    for end in [-1.0, 1.0] {
+        points.extend(RIM.map(|(x, z)| Sample {
+            point: Vec3::new(x * c.radius, end * c.half_height, z * c.radius),
+            normal: Vec3::new(x, end, z).normalize(),
+        }));
     }
     for k in 0..=LINE_PARTS {
         let along = 2.0 * (k as f32 / LINE_PARTS as f32) - 1.0;
@@ -96,33 +106,42 @@ fn cylinder(c: &Cylinder, gradient: impl Fn(Vec3) -> Vec3, points: &mut Vec<Vec3
         let across = Vec3::new(away.x, 0.0, away.z);
         // Where the mesh is straight ahead along the axis, every side is the same and the rims have the points.
         if across.length_squared() > 1e-6 {
-            points.push(on_axis - across.normalize() * c.radius);
+            let out = -across.normalize();
+            // At its ends the line is on a rim.
+            let end = if k == 0 {
+                -Vec3::Y
+            } else if k == LINE_PARTS {
+                Vec3::Y
+            } else {
+                Vec3::ZERO
+            };
+            points.push(Sample { point: on_axis + out * c.radius, normal: (out + end).normalize() });
         }
     }
 }
 
-fn vertex(v: Vec3, region: &Region, points: &mut Vec<Vec3>) {
-    if v.distance_squared(region.centre) <= region.radius * region.radius {
-        points.push(v);
+fn vertex(point: Vec3, normal: Vec3, region: &Region, points: &mut Vec<Sample>) {
+    if point.distance_squared(region.centre) <= region.radius * region.radius {
+        points.push(Sample { point, normal });
     }
 }
 
 /// The points that cut an edge into equal parts no longer than `spacing`, as far as they are in the region. They stay
 /// where they are on the edge when the shape moves.
-fn edge([a, b]: [Vec3; 2], region: &Region, spacing: f32, points: &mut Vec<Vec3>) {
+fn edge([a, b]: [Vec3; 2], normal: Vec3, (region, spacing): (&Region, f32), points: &mut Vec<Sample>) {
     let (along, length) = (b - a, a.distance(b));
     let parts = (length / spacing).ceil().min(EDGE_PARTS_MAX);
     // Where the edge's line enters and leaves the ball, as parts from a.
     let to_centre = region.centre - a;
     let middle = to_centre.dot(along) / length;
     let half_squared = region.radius * region.radius - (to_centre.length_squared() - middle * middle);
-    // Negative where the line misses the ball; not a number where the edge has no length.
-    if !(half_squared >= 0.0) {
+    // The line misses the ball, or the edge has no length.
+    if half_squared < 0.0 || half_squared.is_nan() {
         return;
     }
     let half = half_squared.sqrt();
     let part = |distance: f32| (distance / length * parts).clamp(0.0, parts);
     let (enter, leave) = (part(middle - half).ceil() as u32, part(middle + half) as u32);
     let inner = enter.max(1)..=leave.min((parts as u32).saturating_sub(1));
-    points.extend(inner.map(|k| a + along * (k as f32 / parts)));
+    points.extend(inner.map(|k| Sample { point: a + along * (k as f32 / parts), normal }));
 }

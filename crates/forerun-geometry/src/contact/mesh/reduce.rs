@@ -39,10 +39,10 @@ pub(super) fn reduce(candidates: &mut Vec<Candidate>, directions: &[Direction], 
             }
             !belongs
         });
-        let direction = &directions[side[0].direction as usize];
-        let mut chosen = choose(&side, DEPTH_PENALTY * direction.margin / direction.reach);
+        let direction = &directions[side[0].direction];
+        let mut chosen = choose(&side, DEPTH_PENALTY * direction.near / direction.margin);
         for c in &mut chosen {
-            smooth(c, &directions[c.direction as usize]);
+            smooth(c, &directions[c.direction]);
         }
         emit(&chosen, out);
     }
@@ -64,25 +64,39 @@ fn deepest(candidates: &[Candidate]) -> Option<usize> {
 /// tilted is shallow now and deep at the end of the step.
 fn choose(side: &[Candidate], far_penalty: f32) -> Vec<Candidate> {
     let mut chosen = vec![side[0]];
-    let mut distances_squared = vec![f32::INFINITY; side.len()];
+    let mut left: Vec<Left> = side
+        .iter()
+        .map(|c| Left {
+            position: c.position,
+            shallower: (c.separation - side[0].separation).max(0.0),
+            distance_squared: f32::INFINITY,
+        })
+        .collect();
     while chosen.len() < POINTS_MAX {
         let newest = chosen[chosen.len() - 1].position;
         let penalty = if chosen.len() < POINTS_MAX / 2 { DEPTH_PENALTY } else { far_penalty };
-        let mut best: Option<(usize, f32)> = None;
-        for (i, c) in side.iter().enumerate() {
-            distances_squared[i] = distances_squared[i].min(c.position.distance_squared(newest));
-            if distances_squared[i] <= SAME_POINT * SAME_POINT {
-                continue;
-            }
-            let score = distances_squared[i].sqrt() - penalty * (c.separation - side[0].separation).max(0.0);
-            if score > best.map_or(SAME_POINT, |(_, s)| s) {
-                best = Some((i, score));
+        let mut best = (SAME_POINT, None);
+        for (i, c) in left.iter_mut().enumerate() {
+            c.distance_squared = c.distance_squared.min(c.position.distance_squared(newest));
+            // Squared it saves the root of most: the distance must be above the best score and the penalty.
+            let needed = best.0 + penalty * c.shallower;
+            if c.distance_squared > needed * needed {
+                best = (c.distance_squared.sqrt() - penalty * c.shallower, Some(i));
             }
         }
-        let Some((i, _)) = best else { break };
+        let (_, Some(i)) = best else { break };
         chosen.push(side[i]);
     }
     chosen
+}
+
+/// A candidate that may still be chosen.
+struct Left {
+    position: Vec3,
+    /// How much larger its separation is than the smallest. Metres.
+    shallower: f32,
+    /// To the nearest of those chosen. Square metres.
+    distance_squared: f32,
 }
 
 /// Replaces the normal of a candidate found in the field of a mesh by the smooth one.
@@ -108,8 +122,7 @@ fn emit(chosen: &[Candidate], out: &mut Vec<Manifold>) {
     let normal = sum.try_normalize().unwrap_or(chosen[0].normal);
     let manifolds = chosen.len().div_ceil(4);
     for turn in 0..manifolds {
-        let nothing = ContactPoint { position: Vec3::ZERO, normal, separation: 0.0 };
-        let mut manifold = Manifold { normal, points: [nothing; 4], count: 0 };
+        let mut manifold = Manifold { normal, points: [ContactPoint::FAR_APART; 4], count: 0 };
         for c in chosen.iter().skip(turn).step_by(manifolds) {
             let point = ContactPoint { position: c.position, normal: c.normal, separation: c.separation };
             manifold.points[manifold.count as usize] = point;

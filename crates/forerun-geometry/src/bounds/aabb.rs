@@ -1,4 +1,4 @@
-//! Bounding volumes and their overlap tests (dissertation, section 2.3.1).
+//! Axis-aligned bounding boxes (dissertation, section 2.3.1).
 
 use glam::Vec3;
 
@@ -46,6 +46,18 @@ impl Aabb {
             && other.min.y <= self.max.y
             && self.min.z <= other.max.z
             && other.min.z <= self.max.z
+    }
+
+    /// Whether the point is in the box or on it.
+    #[must_use]
+    pub fn contains(&self, point: Vec3) -> bool {
+        self.closest_point(point) == point
+    }
+
+    /// The point of the box closest to `point`: itself when inside. Metres.
+    #[must_use]
+    pub fn closest_point(&self, point: Vec3) -> Vec3 {
+        point.max(self.min).min(self.max)
     }
 
     /// The smallest box that holds both.

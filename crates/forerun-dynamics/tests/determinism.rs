@@ -1,0 +1,97 @@
+//! The same bits for any thread count, any company, and whether resting islands are skipped or not.
+
+mod common;
+
+use common::{cuboid, ground, pyramid, rain, run, world_of};
+use forerun_dynamics::{BodyState, StepSettings, Unobserved, World};
+use forerun_geometry::{Shape, Vec3};
+
+fn bits(world: &World) -> Vec<[u32; 14]> {
+    world.states().iter().map(BodyState::bits).collect()
+}
+
+#[test]
+fn thread_counts_agree() {
+    let mut reference = None;
+    for threads in [1, 2, 4] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
+        let mut world = world_of(&rain(200, 3));
+        pool.install(|| run(&mut world, 120));
+        let hash = bits(&world);
+        assert!(*reference.get_or_insert_with(|| hash.clone()) == hash, "{threads} threads differ from 1");
+    }
+}
+
+#[test]
+fn an_island_does_not_notice_the_others() {
+    // Two heaps far apart, together and alone.
+    let (left, right) = (rain(60, 1), rain(60, 2));
+    let moved: Vec<_> = (right.iter().cloned())
+        .map(|mut def| {
+            // The ground is everywhere; its frame must not change.
+            if def.shape != Shape::HalfSpace {
+                def.pose.position.x += 64.0;
+            }
+            def
+        })
+        .collect();
+    let mut both = world_of(&left.iter().chain(&moved[1..]).cloned().collect::<Vec<_>>());
+    let (mut one, mut other) = (world_of(&left), world_of(&moved));
+    for world in [&mut both, &mut one, &mut other] {
+        run(world, 200);
+    }
+    let (both, one, other) = (bits(&both), bits(&one), bits(&other));
+    assert!(both[..one.len()] == one[..], "the left heap differs");
+    assert!(both[one.len()..] == other[1..], "the right heap differs");
+}
+
+#[test]
+fn skipping_resting_islands_changes_nothing() {
+    // A shot at a pyramid that has come to rest. Without the skip, every rest counter is one lower at the end of rest.
+    let shot = |skip: bool| {
+        let mut defs = pyramid(8);
+        let mut ball = cuboid(Vec3::splat(0.3), Vec3::new(3.0, 6.0, 60.0));
+        ball.velocity = Vec3::new(0.0, 6.0, -40.0);
+        ball.gravity_scale = 0.5;
+        defs.push(ball);
+        let mut world = world_of(&defs);
+        let full = StepSettings::default().rest_frames();
+        for _ in 0..400 {
+            if !skip {
+                for state in world.states_mut() {
+                    state.rest = state.rest.min(full);
+                }
+            }
+            world.step(&mut Unobserved);
+        }
+        world
+            .states()
+            .iter()
+            .map(|s| (s.position, s.rotation, s.velocity, s.angular_velocity))
+            .collect::<Vec<_>>()
+    };
+    assert!(shot(true) == shot(false));
+}
+
+#[test]
+fn a_support_that_goes_wakes_what_it_carried() {
+    let mut world = world_of(&[
+        ground(),
+        cuboid(common::UNIT, Vec3::new(0.0, 0.5, 0.0)),
+        cuboid(common::UNIT, Vec3::new(0.0, 1.5, 0.0)),
+    ]);
+    run(&mut world, 200);
+    let full = world.environment.settings.rest_frames();
+    assert!(world.states()[2].rest > full, "the stack has not come to rest");
+    // Moved away by hand, and awake as every moved body is.
+    world.states_mut()[1].position.x = 10.0;
+    for state in world.states_mut() {
+        state.rest = state.rest.min(full);
+    }
+    run(&mut world, 120);
+    assert!(
+        (world.states()[2].position.y - 0.5).abs() < 0.01,
+        "it hangs at {}",
+        world.states()[2].position.y
+    );
+}

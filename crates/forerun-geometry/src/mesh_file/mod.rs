@@ -1,0 +1,169 @@
+//! Mesh files: triangle meshes from OBJ and STL.
+//!
+//! The readers are our own: the usual crates do not say in which line an error is, and one of them can panic on a bad index; the tests compare
+//! with both on good files. Nothing in a file makes them panic or allocate more than a few times its size.
+
+use std::fmt;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::Vec3;
+use crate::shape::{Mesh, MeshError};
+
+mod obj;
+mod stl;
+
+pub use obj::parse_obj;
+pub use stl::parse_stl;
+
+/// Largest file that is read. Bytes.
+const LARGEST_FILE: u64 = 1 << 30;
+
+/// What a file says, before anything is checked but the numbers themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleList {
+    /// Vertices. In the file's unit of length.
+    pub vertices: Vec<Vec3>,
+    /// Vertex indices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Why bytes are no mesh file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParseError {
+    /// Where, like `line 12` or `triangle 3`.
+    pub place: String,
+    /// What is wrong, and what to do about it.
+    pub message: String,
+}
+
+impl ParseError {
+    fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
+        ParseError { place: place.into(), message: message.into() }
+    }
+
+    fn at_line(number: usize, message: impl Into<String>) -> Self {
+        ParseError::new(format!("line {number}"), message)
+    }
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.message)
+    }
+}
+
+impl std::error::Error for ParseError {}
+
+/// Why a file gives no mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub problem: MeshFileProblem,
+}
+
+/// What is wrong with a mesh file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshFileProblem {
+    /// The file system says no; its words.
+    Unreadable(String),
+    /// More than 1 GiB.
+    TooLarge,
+    /// The extension is neither `obj` nor `stl`.
+    UnknownFormat,
+    /// The scale asked for is not a finite number above 0.
+    Scale(f32),
+    /// The content is not of the format.
+    Parse(ParseError),
+    /// The triangles are no usable mesh.
+    Mesh(MeshError),
+}
+
+impl fmt::Display for MeshFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.path.display())?;
+        match &self.problem {
+            MeshFileProblem::Unreadable(why) => write!(f, "cannot be read: {why}"),
+            MeshFileProblem::TooLarge => write!(f, "is larger than 1 GiB; simplify the mesh"),
+            MeshFileProblem::UnknownFormat => {
+                write!(f, "is of no known mesh format; use a file that ends in .obj or .stl")
+            }
+            MeshFileProblem::Scale(scale) => {
+                write!(f, "the scale must be a finite number above 0, is {scale}")
+            }
+            MeshFileProblem::Parse(error) => error.fmt(f),
+            MeshFileProblem::Mesh(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for MeshFileError {}
+
+/// The closed mesh in an OBJ or STL file, its lengths multiplied by `scale` (0.001 for a file in millimetres).
+///
+/// # Errors
+/// When the file cannot be read or parsed, or its triangles are no closed mesh; see [`Mesh::new`].
+pub fn load_mesh(path: impl AsRef<Path>, scale: f32) -> Result<Mesh, MeshFileError> {
+    load(path.as_ref(), scale, Mesh::new)
+}
+
+/// The same for a mesh that may be open: terrain and other fixed bodies.
+///
+/// # Errors
+/// When the file cannot be read or parsed, or has no triangles; see [`Mesh::open`].
+pub fn load_open_mesh(path: impl AsRef<Path>, scale: f32) -> Result<Mesh, MeshFileError> {
+    load(path.as_ref(), scale, Mesh::open)
+}
+
+type MakeMesh = fn(Vec<Vec3>, Vec<[u32; 3]>) -> Result<Mesh, MeshError>;
+
+fn load(path: &Path, scale: f32, make: MakeMesh) -> Result<Mesh, MeshFileError> {
+    let fail = |problem| MeshFileError { path: path.to_owned(), problem };
+    if !(scale > 0.0 && scale.is_finite()) {
+        return Err(fail(MeshFileProblem::Scale(scale)));
+    }
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let parse = match extension.as_str() {
+        "obj" => parse_obj,
+        "stl" => parse_stl,
+        _ => return Err(fail(MeshFileProblem::UnknownFormat)),
+    };
+    let bytes = read(path).map_err(fail)?;
+    let mut list = parse(&bytes).map_err(|e| fail(MeshFileProblem::Parse(e)))?;
+    list.vertices.iter_mut().for_each(|v| *v *= scale);
+    make(list.vertices, list.triangles).map_err(|e| fail(MeshFileProblem::Mesh(e)))
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, MeshFileProblem> {
+    let unreadable = |e: std::io::Error| MeshFileProblem::Unreadable(e.to_string());
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > LARGEST_FILE { Err(MeshFileProblem::TooLarge) } else { Ok(bytes) }
+}
+
+/// Three finite numbers from words.
+fn parse_position<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<Vec3, String> {
+    let mut position = Vec3::ZERO;
+    for axis in 0..3 {
+        let word = words.next().ok_or_else(|| format!("a vertex needs three numbers, there are {axis}"))?;
+        let number: f32 = word.parse().map_err(|_| format!("\"{}\" is not a number", shortened(word)))?;
+        if !number.is_finite() {
+            return Err(format!("\"{}\" is not a finite number", shortened(word)));
+        }
+        position[axis] = number;
+    }
+    Ok(position)
+}
+
+/// The first characters of a word that may be anything, fit to be shown.
+fn shortened(word: &str) -> String {
+    let mut shown: String = word.chars().take(24).flat_map(char::escape_debug).collect();
+    if word.chars().nth(24).is_some() {
+        shown.push('…');
+    }
+    shown
+}

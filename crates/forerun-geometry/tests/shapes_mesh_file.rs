@@ -1,0 +1,193 @@
+//! Mesh files: good ones as other readers read them, bad ones without a panic.
+
+mod shapes_common;
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use forerun_geometry::mesh_file::{MeshFileProblem, load_mesh, load_open_mesh, parse_obj, parse_stl};
+use forerun_geometry::shape::{Mesh, mesh_make};
+use forerun_geometry::{Shape, Vec3};
+use shapes_common::Random;
+
+fn torus() -> Mesh {
+    mesh_make::torus(0.4, 0.15, 20, 10).unwrap()
+}
+
+fn as_obj(mesh: &Mesh) -> String {
+    let mut text = String::from("# torus\no thing\n");
+    for v in &mesh.vertices {
+        text += &format!("v {} {} {}\n", v.x, v.y, v.z);
+    }
+    text += "vn 0 1 0\nusemtl none\ns off\n";
+    for t in &mesh.triangles {
+        text += &format!("f {}//1 {}//1 {}//1\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    }
+    text
+}
+
+fn as_stl_text(mesh: &Mesh) -> String {
+    let mut text = String::from("solid thing\n");
+    for t in 0..mesh.triangles.len() {
+        text += "facet normal 0 0 0\n outer loop\n";
+        for v in mesh.corners(t) {
+            text += &format!("  vertex {:e} {:e} {:e}\n", v.x, v.y, v.z);
+        }
+        text += " endloop\nendfacet\n";
+    }
+    text + "endsolid thing\n"
+}
+
+fn as_stl_binary(mesh: &Mesh) -> Vec<u8> {
+    let triangles: Vec<stl_io::Triangle> = (0..mesh.triangles.len())
+        .map(|t| stl_io::Triangle {
+            normal: stl_io::Normal::new([0.0; 3]),
+            vertices: mesh.corners(t).map(|v| stl_io::Vertex::new(v.to_array())),
+        })
+        .collect();
+    let mut bytes = Vec::new();
+    stl_io::write_stl(&mut bytes, triangles.iter()).unwrap();
+    bytes
+}
+
+#[test]
+fn obj_as_tobj_reads_it() {
+    let text = as_obj(&torus());
+    let ours = parse_obj(text.as_bytes()).unwrap();
+    let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
+    let options = tobj::LoadOptions { triangulate: true, ..tobj::LoadOptions::default() };
+    let (models, _) = tobj::load_obj_buf(&mut Cursor::new(&text), &options, no_materials).unwrap();
+    assert_eq!(models.len(), 1);
+    let theirs = &models[0].mesh;
+    let corner = |i: u32| &theirs.positions[3 * i as usize..][..3];
+    let positions = theirs.indices.iter().map(|&i| Vec3::from_slice(corner(i)));
+    let own = ours.triangles.iter().flatten().map(|&i| ours.vertices[i as usize]);
+    assert!(own.eq(positions));
+}
+
+#[test]
+fn stl_as_stl_io_reads_it() {
+    let mesh = torus();
+    for bytes in [as_stl_text(&mesh).into_bytes(), as_stl_binary(&mesh)] {
+        let ours = parse_stl(&bytes).unwrap();
+        let theirs = stl_io::read_stl(&mut Cursor::new(&bytes)).unwrap();
+        let positions =
+            theirs.faces.iter().flat_map(|f| f.vertices).map(|i| Vec3::from(theirs.vertices[i].0));
+        assert!(ours.triangles.iter().flatten().map(|&i| ours.vertices[i as usize]).eq(positions));
+    }
+}
+
+fn file(name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+#[test]
+fn all_formats_give_the_same_solid() {
+    let mesh = torus();
+    let mass = Shape::from(mesh.clone()).mass_properties(1000.0).mass;
+    let files = [
+        file("torus.obj", as_obj(&mesh)),
+        file("torus.STL", as_stl_text(&mesh)),
+        file("torus_binary.stl", as_stl_binary(&mesh)),
+    ];
+    for path in files {
+        let loaded = load_mesh(&path, 2.0).unwrap();
+        assert_eq!((loaded.vertices.len(), loaded.triangles.len()), (200, 400));
+        assert!(loaded.repairs.welded_vertices == 0 || loaded.repairs.welded_vertices == 1000);
+        let loaded = Shape::from(loaded).mass_properties(1000.0);
+        assert!((loaded.mass / mass - 8.0).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn errors_name_file_place_and_remedy() {
+    let error = load_mesh("nowhere/mug.obj", 1.0).unwrap_err();
+    assert!(matches!(error.problem, MeshFileProblem::Unreadable(_)));
+    assert!(error.to_string().starts_with("nowhere/mug.obj: cannot be read: "), "{error}");
+    let error = load_mesh("mug.blend", 1.0).unwrap_err().to_string();
+    assert_eq!(error, "mug.blend: is of no known mesh format; use a file that ends in .obj or .stl");
+    let path = file("scaled.obj", as_obj(&torus()));
+    assert_eq!(load_mesh(&path, -1.0).unwrap_err().problem, MeshFileProblem::Scale(-1.0));
+    let path = file("large.obj", as_obj(&mesh_make::cuboid(Vec3::splat(2.0)).unwrap()));
+    assert!(matches!(load_mesh(&path, f32::MAX).unwrap_err().problem, MeshFileProblem::Mesh(_)));
+
+    let text = as_obj(&torus());
+    let path = file("cut.obj", &text[..text.len() - 30]);
+    let error = load_mesh(&path, 1.0).unwrap_err();
+    assert!(matches!(error.problem, MeshFileProblem::Parse(_) | MeshFileProblem::Mesh(_)), "{error}");
+    let path = file("holed.obj", text.rsplit_once("\nf").unwrap().0);
+    let error = load_mesh(&path, 1.0).unwrap_err().to_string();
+    assert!(error.contains("holed.obj: the mesh is not closed: 3 edges"), "{error}");
+    assert!(!load_open_mesh(&path, 1.0).unwrap().closed);
+    for name in ["empty.obj", "empty.stl"] {
+        assert!(matches!(load_mesh(file(name, ""), 1.0).unwrap_err().problem, MeshFileProblem::Parse(_)));
+    }
+}
+
+/// Cuts, repeats, overwrites or swaps in whole numbers.
+fn damage(random: &mut Random, bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    let below = |random: &mut Random, n: usize| (random.bits() % (n.max(1) as u64)) as usize;
+    for _ in 0..=below(random, 4) {
+        if bytes.is_empty() {
+            break;
+        }
+        let at = below(random, bytes.len());
+        let to = at + below(random, 40.min(bytes.len() - at) + 1);
+        match random.bits() % 6 {
+            0 => bytes.truncate(at),
+            1 => bytes[at] = random.bits() as u8,
+            2 => drop(bytes.drain(at..to)),
+            3 => {
+                let copy = bytes[at..to].to_vec();
+                let into = below(random, bytes.len());
+                bytes.splice(into..into, copy);
+            }
+            4 => bytes[at..to].iter_mut().for_each(|b| *b = random.bits() as u8),
+            _ => {
+                let words: [&[u8]; 8] = [
+                    b"-9223372036854775808",
+                    b"nan",
+                    b" 1e39",
+                    b"f 1 2 3 4 5\n",
+                    b"/",
+                    b"\xff\xfe",
+                    b"99999999999",
+                    b"\n",
+                ];
+                bytes.splice(at..to, words[below(random, 8)].iter().copied());
+            }
+        }
+    }
+    bytes
+}
+
+#[test]
+fn damaged_files_never_panic() {
+    let mesh = mesh_make::cuboid(Vec3::ONE).unwrap();
+    let good =
+        [as_obj(&mesh).into_bytes(), as_stl_text(&mesh).into_bytes(), as_stl_binary(&mesh), vec![b'x'; 200]];
+    let mut random = Random(41);
+    let (mut parsed, mut meshes, mut refused) = (0, 0, 0);
+    for round in 0..20_000 {
+        let bytes = damage(&mut random, &good[round % 4]);
+        for list in [parse_obj(&bytes), parse_stl(&bytes)] {
+            match list {
+                Ok(list) => {
+                    parsed += 1;
+                    assert!(list.vertices.iter().all(|v| v.is_finite()));
+                    let closed = Mesh::new(list.vertices.clone(), list.triangles.clone());
+                    meshes += usize::from(closed.is_ok());
+                    assert!(closed.is_err() || Mesh::open(list.vertices, list.triangles).is_ok());
+                }
+                Err(error) => {
+                    refused += 1;
+                    assert!(!error.place.is_empty() && error.to_string().len() < 250, "{error}");
+                }
+            }
+        }
+    }
+    assert!(parsed > 1000 && meshes > 200 && refused > 2000, "{parsed} {meshes} {refused}");
+}
