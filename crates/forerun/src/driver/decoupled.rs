@@ -215,9 +215,11 @@ impl Decoupled {
 
     /// The last frame at or before the display time.
     fn displayed_frame(&self) -> Frame {
-        // As in the dissertation's algorithm 1, a time within a hair of a frame is that frame: k·h/h may round to below k.
-        const HAIR: f64 = 1e-6;
-        Frame((self.time_s / self.frame_seconds + HAIR) as u64)
+        // As in the dissertation's algorithm 1, a time within a hair of a frame is that frame: k·h/h may round to below k. The hair is
+        // that of the snapshot's sampling, so that the frame is the one that is shown.
+        const HAIR: f64 = 1e-9;
+        let frames = self.time_s / self.frame_seconds;
+        Frame((frames + HAIR * frames.max(1.0)) as u64)
     }
 
     fn alive(&self) -> Result<(), DriverError> {

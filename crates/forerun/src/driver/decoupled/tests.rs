@@ -6,7 +6,7 @@ use super::*;
 use crate::{Clock, Cuboid, Environment, Pose, Shape, Sphere, TimelineSettings, Vec3};
 
 const LOOKAHEAD: u32 = 20;
-const FRAME_S: f64 = 1.0 / 60.0;
+const FRAME_S: f64 = (1.0_f32 / 60.0) as f64;
 
 /// A ball above the ground and another far away.
 fn timeline() -> Timeline {
