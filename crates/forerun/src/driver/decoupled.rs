@@ -13,6 +13,7 @@ use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Snapsho
 
 use super::frame_notes::FrameNote;
 use super::physics::{self, Hinder, Shared};
+use super::reach::Reach;
 use crate::{BodyDef, BodyId, Threads};
 
 /// How the physics thread works.
@@ -114,6 +115,7 @@ impl Decoupled {
         let snapshot = timeline.snapshot();
         let frame_seconds = f64::from(snapshot.frame_seconds());
         let next_body = timeline.reserve_body();
+        let reach = Reach::new(timeline.settings().lookahead);
         let shared = Arc::new(Shared::new(&timeline, next_body));
         let physics = physics::Physics {
             timeline,
@@ -122,6 +124,8 @@ impl Decoupled {
             refusals: refusal_queue,
             reserved: next_body,
             command_capacity: settings.command_capacity,
+            reach,
+            pictures: 0,
             hinder,
         };
         let thread = physics::spawn(physics, settings.threads)

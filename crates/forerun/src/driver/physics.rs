@@ -18,6 +18,7 @@ use forerun_timeline::{
 };
 
 use super::frame_notes::{FrameNote, FrameNotes};
+use super::reach::Reach;
 use crate::{BodyId, Threads};
 
 /// Done after every computed frame.
@@ -43,6 +44,8 @@ pub(super) struct Shared {
     /// The earliest frame up to which all was true right after commands were heard, since the display last asked.
     dropped_to: AtomicU64,
     display: AtomicU64,
+    /// Pictures asked for so far.
+    pictures: AtomicU64,
     stopping: AtomicBool,
     sleeper: OnceLock<Thread>,
 }
@@ -63,17 +66,18 @@ impl Shared {
             next_body: AtomicU32::new(next_body.0),
             dropped_to: AtomicU64::new(u64::MAX),
             display: AtomicU64::new(0),
+            pictures: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
             sleeper: OnceLock::new(),
         }
     }
 
-    /// Tells the physics which frame the display has reached.
+    /// Tells the physics that a picture of this frame is shown.
     pub(super) fn tell_display(&self, frame: Frame) {
         // Unparking orders these stores before what the woken thread reads; a busy one reads them a frame later, which is soon enough.
-        if self.display.swap(frame.0, Ordering::Relaxed) != frame.0 {
-            self.wake();
-        }
+        self.display.store(frame.0, Ordering::Relaxed);
+        self.pictures.fetch_add(1, Ordering::Relaxed);
+        self.wake();
     }
 
     /// How far back commands have thrown the physics since the last call; none when no command came.
@@ -106,6 +110,9 @@ pub(super) struct Physics {
     pub(super) reserved: BodyId,
     /// Commands heard at a time, so that a flood of them cannot keep physics from its work.
     pub(super) command_capacity: usize,
+    pub(super) reach: Reach,
+    /// Pictures that the reach has grown for.
+    pub(super) pictures: u64,
     pub(super) hinder: Hinder,
 }
 
@@ -136,8 +143,8 @@ impl Physics {
     fn run(&mut self) {
         while !self.shared.stopping.load(Ordering::Relaxed) {
             self.hear_commands();
-            self.timeline.set_display(Frame(self.shared.display.load(Ordering::Relaxed)));
-            match self.timeline.advance() {
+            self.learn_display();
+            match self.advance() {
                 Progress::Advanced(advance) => {
                     let slices_max = u8::try_from(advance.slices_max).unwrap_or(u8::MAX);
                     let areas_active = self.timeline.areas_active(advance.frame);
@@ -148,6 +155,22 @@ impl Physics {
                 Progress::Idle => std::thread::park(),
             }
         }
+    }
+
+    /// Learns what is shown, and how far ahead of it to go.
+    fn learn_display(&mut self) {
+        self.timeline.set_display(Frame(self.shared.display.load(Ordering::Relaxed)));
+        let pictures = self.shared.pictures.load(Ordering::Relaxed);
+        if pictures != self.pictures {
+            self.pictures = pictures;
+            self.reach.grow();
+        }
+    }
+
+    /// The next frame of work, as far as the reach goes.
+    fn advance(&mut self) -> Progress {
+        let reached = self.timeline.display().plus(u64::from(self.reach.frames()));
+        if self.timeline.valid_to() >= reached { Progress::Idle } else { self.timeline.advance() }
     }
 
     /// Takes the commands that wait.
@@ -166,6 +189,7 @@ impl Physics {
                 let _ = self.refusals.try_send((key, error));
             }
         }
+        self.reach.shorten();
         self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
         self.publish();
     }
