@@ -3,7 +3,6 @@
 //! Promise: no call here waits for a step. What the physics knows comes by one atomic read, what the user does goes by a bounded queue.
 
 use std::fmt;
-use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
@@ -61,6 +60,7 @@ pub struct Decoupled {
     refusals: Receiver<(CommandKey, CommandError)>,
     frame_seconds: f64,
     time_s: f64,
+    next_body: BodyId,
     next_sequence: u64,
 }
 
@@ -116,13 +116,12 @@ impl Decoupled {
         let frame_seconds = f64::from(snapshot.frame_seconds());
         let next_body = timeline.reserve_body();
         let reach = Reach::new(timeline.settings().lookahead);
-        let shared = Arc::new(Shared::new(&timeline, next_body));
+        let shared = Arc::new(Shared::new(&timeline));
         let physics = physics::Physics {
             timeline,
             shared: Arc::clone(&shared),
             commands: command_queue,
             refusals: refusal_queue,
-            reserved: next_body,
             command_capacity: settings.command_capacity,
             reach,
             pictures: 0,
@@ -137,6 +136,7 @@ impl Decoupled {
             refusals,
             frame_seconds,
             time_s: 0.0,
+            next_body,
             next_sequence: 0,
         })
     }
@@ -191,9 +191,11 @@ impl Decoupled {
         Ok(body)
     }
 
-    /// A name for a body to be added by a command of one's own.
+    /// A name for a body to be added by a command of one's own. The timeline learns it with that command.
     pub fn reserve_body(&mut self) -> BodyId {
-        BodyId(self.shared.next_body.fetch_add(1, Ordering::Relaxed))
+        let body = self.next_body;
+        self.next_body = BodyId(body.0 + 1);
+        body
     }
 
     /// A command with a frame of its own, possibly in the past, as they come from a network. Local changes use source 0.

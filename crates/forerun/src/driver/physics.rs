@@ -7,7 +7,7 @@
 use std::any::Any;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
@@ -19,7 +19,7 @@ use forerun_timeline::{
 
 use super::frame_notes::{FrameNote, FrameNotes};
 use super::reach::Reach;
-use crate::{BodyId, Threads};
+use crate::Threads;
 
 /// Done after every computed frame.
 pub(super) type Hinder = Box<dyn FnMut() + Send>;
@@ -39,8 +39,6 @@ pub(super) struct Shared {
     pub(super) notes: FrameNotes,
     /// Message of a panic of the physics thread; locked only after it has ended.
     pub(super) panic: Mutex<Option<String>>,
-    /// The first body name that is not given away.
-    pub(super) next_body: AtomicU32,
     /// The earliest frame up to which all was true right after commands were heard, since the display last asked.
     dropped_to: AtomicU64,
     display: AtomicU64,
@@ -51,8 +49,7 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// `next_body` is the last name that the timeline gave away, and nobody has used.
-    pub(super) fn new(timeline: &Timeline, next_body: BodyId) -> Self {
+    pub(super) fn new(timeline: &Timeline) -> Self {
         let settings = timeline.settings();
         // The newest note is at most the lookahead after the displayed frame; what is kept of the past may be shown too.
         let notes_kept = settings.lookahead as usize + settings.past as usize + 2;
@@ -63,7 +60,6 @@ impl Shared {
             }),
             notes: FrameNotes::with_capacity(notes_kept),
             panic: Mutex::new(None),
-            next_body: AtomicU32::new(next_body.0),
             dropped_to: AtomicU64::new(u64::MAX),
             display: AtomicU64::new(0),
             pictures: AtomicU64::new(0),
@@ -106,8 +102,6 @@ pub(super) struct Physics {
     pub(super) shared: Arc<Shared>,
     pub(super) commands: Receiver<Command>,
     pub(super) refusals: SyncSender<(CommandKey, CommandError)>,
-    /// The last body name that the timeline gave away.
-    pub(super) reserved: BodyId,
     /// Commands heard at a time, so that a flood of them cannot keep physics from its work.
     pub(super) command_capacity: usize,
     pub(super) reach: Reach,
@@ -180,9 +174,6 @@ impl Physics {
             return;
         }
         for command in heard {
-            if let Change::Add { body, .. } = &command.change {
-                self.reserve_up_to(*body);
-            }
             let key = command.key;
             if let Err(error) = self.timeline.submit(command) {
                 // When it is full, nobody has asked for refusals for a whole queue's length, and nobody wants this one either.
@@ -192,15 +183,6 @@ impl Physics {
         self.reach.shorten();
         self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
         self.publish();
-    }
-
-    /// The display gives names to new bodies itself, so as not to wait for an answer; here the timeline learns them. A name that
-    /// was not given by the display stays unknown, and the timeline refuses it.
-    fn reserve_up_to(&mut self, body: BodyId) {
-        let given = self.shared.next_body.load(Ordering::Relaxed);
-        while self.reserved < body && self.reserved.0 + 1 < given {
-            self.reserved = self.timeline.reserve_body();
-        }
     }
 
     fn publish(&self) {

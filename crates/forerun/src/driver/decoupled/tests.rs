@@ -161,8 +161,9 @@ fn a_command_that_the_timeline_refuses_comes_back_with_the_reason() {
 fn added_bodies_get_their_names_without_asking_the_physics() {
     let mut driver = slow(0);
     let ball = || BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::new(-20.0, 3.0, 0.0));
-    let (first, second) = (driver.add(ball()).expect("room"), driver.add(ball()).expect("room"));
-    assert_eq!((first, second), (BodyId(3), BodyId(4)));
+    let (first, unused) = (driver.add(ball()).expect("room"), driver.reserve_body());
+    let second = driver.add(ball()).expect("room");
+    assert_eq!((first, unused, second), (BodyId(3), BodyId(4), BodyId(5)));
     let last = Frame(u64::from(LOOKAHEAD));
     assert!(eventually(|| {
         driver.show(0.0).expect("physics lives");
