@@ -57,13 +57,13 @@ pub(crate) struct RunArgs {
     #[arg(help = SCENE_HELP)]
     pub(crate) scene: String,
     /// Length in seconds of real time
-    #[arg(long, default_value = "10", value_parser = seconds)]
+    #[arg(long, default_value = "10", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
     /// Who steps the physics
     #[arg(long, value_enum, default_value = "decoupled")]
     pub(crate) driver: DriverArg,
     /// Pictures per second
-    #[arg(long, default_value = "30", value_parser = fps)]
+    #[arg(long, default_value = "30", value_parser = fps, allow_negative_numbers = true)]
     pub(crate) fps: f64,
     /// Most frames that physics is ahead of the display
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -103,7 +103,7 @@ pub(crate) struct ExperimentArgs {
     #[arg(long, default_value = "forerun-experiments")]
     pub(crate) out: PathBuf,
     /// Length in seconds of real time [default: as in the dissertation's figures]
-    #[arg(long, value_parser = seconds)]
+    #[arg(long, value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
 }
 
@@ -166,7 +166,7 @@ pub(crate) struct BakeArgs {
     #[arg(short, long)]
     pub(crate) output: PathBuf,
     /// Length in seconds of simulated time
-    #[arg(long, default_value = "10", value_parser = seconds)]
+    #[arg(long, default_value = "10", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
 }
 

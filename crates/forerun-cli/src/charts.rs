@@ -37,6 +37,8 @@ pub(crate) struct Line {
     pub(crate) name: String,
     pub(crate) colour: RGBColor,
     pub(crate) stroke: Stroke,
+    /// Pixels.
+    pub(crate) width: u32,
     pub(crate) points: Vec<(f64, f64)>,
 }
 
@@ -107,7 +109,7 @@ fn draw_panel<DB: DrawingBackend>(
         .axis_style(AXIS_TEXT)
         .draw()?;
     for line in &panel.lines {
-        let style = line.colour.stroke_width(2);
+        let style = line.colour.stroke_width(line.width);
         let points = line.points.iter().copied();
         match line.stroke {
             Stroke::Solid => chart
@@ -117,7 +119,7 @@ fn draw_panel<DB: DrawingBackend>(
             Stroke::Dashed => chart
                 .draw_series(DashedLineSeries::new(points, 7, 5, style))?
                 .label(&line.name)
-                .legend(move |at| DashedPathElement::new(legend_ends(at).into_iter(), 7, 5, style)),
+                .legend(move |at| DashedPathElement::new(legend_ends(at), 7, 5, style)),
         };
     }
     let position = match panel.legend {

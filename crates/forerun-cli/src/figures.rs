@@ -7,6 +7,9 @@ use crate::charts::{
     BLUE_LINE, GREEN_LINE, GREY_LINE, Legend, Line, ORANGE_LINE, PURPLE_LINE, Panel, Stroke,
 };
 
+/// Width of a line that others may lie on. Pixels.
+const WIDE: u32 = 6;
+
 /// A recorded playback and what the legend calls it.
 #[derive(Clone, Copy)]
 pub(crate) struct Recorded<'a> {
@@ -16,12 +19,12 @@ pub(crate) struct Recorded<'a> {
 
 /// States in the queue at every picture (figures 5.2, 5.5, 5.8, 5.12).
 pub(crate) fn queue(title: &str, decoupled: &[QueueRow]) -> Panel {
-    let apart = decoupled.iter().any(|row| row.queue_min != row.queue_max);
-    let mut lines = vec![line("most states of a body", BLUE_LINE, decoupled, |row| f64::from(row.queue_max))];
+    let apart = decoupled.iter().any(|row| row.queue_low != row.queue_max);
+    let most = line("most states of a body", BLUE_LINE, decoupled, |row| f64::from(row.queue_max));
+    let mut lines = vec![most];
     if apart {
-        // Dashed, so that the other line shows through where the two are one.
-        let fewest = line("fewest states of a body", ORANGE_LINE, decoupled, |row| f64::from(row.queue_min));
-        lines.push(Line { stroke: Stroke::Dashed, ..fewest });
+        lines[0].width = WIDE;
+        lines.push(line("fewest states of a body", ORANGE_LINE, decoupled, |row| f64::from(row.queue_low)));
     } else {
         "states of every body".clone_into(&mut lines[0].name);
     }
@@ -36,9 +39,10 @@ pub(crate) fn queue(title: &str, decoupled: &[QueueRow]) -> Panel {
 /// Display time and physics time against real time (figures 5.3, 5.6, 5.9, 5.13).
 pub(crate) fn times(title: &str, decoupled: Recorded, coupled: Option<Recorded>) -> Panel {
     let rows = decoupled.rows;
+    let display = format!("display, {}", decoupled.label);
     let mut lines = vec![
-        line(&format!("physics, {}", decoupled.label), BLUE_LINE, rows, |row| row.time_physics_s),
-        line(&format!("display, {}", decoupled.label), GREEN_LINE, rows, |row| row.time_display_s),
+        line(&format!("physics, {}", decoupled.label), BLUE_LINE, rows, |row| row.time_physics_low_s),
+        Line { width: WIDE, ..line(&display, GREEN_LINE, rows, |row| row.time_display_s) },
     ];
     if let Some(coupled) = coupled {
         let name = format!("physics = display, {}", coupled.label);
@@ -54,17 +58,16 @@ pub(crate) fn time_steps(title: &str, recorded: &[Recorded]) -> Panel {
     const COLOURS: [RGBColor; 3] = [BLUE_LINE, PURPLE_LINE, ORANGE_LINE];
     let lines = recorded.iter().zip(COLOURS.into_iter().cycle()).map(|(one, colour)| {
         // The first picture shows the initial states, which no step has made.
-        line(one.label, colour, one.rows.get(1..).unwrap_or_default(), |row| 1000.0 * row.time_step_s)
+        let rows = one.rows.get(1..).unwrap_or_default();
+        Line { width: WIDE, ..line(one.label, colour, rows, |row| 1000.0 * row.time_step_s) }
     });
-    Panel {
-        title: title.to_owned(),
-        y_label: "time step (ms)",
-        legend: Legend::LowerRight,
-        lines: lines.collect(),
-    }
+    let mut lines: Vec<Line> = lines.collect();
+    // Only the first lies under others.
+    lines.iter_mut().skip(1).for_each(|line| line.width = 2);
+    Panel { title: title.to_owned(), y_label: "time step (ms)", legend: Legend::LowerRight, lines }
 }
 
 fn line(name: &str, colour: RGBColor, rows: &[QueueRow], value: impl Fn(&QueueRow) -> f64) -> Line {
     let points = rows.iter().map(|row| (row.time_real_s, value(row))).collect();
-    Line { name: name.to_owned(), colour, stroke: Stroke::Solid, points }
+    Line { name: name.to_owned(), colour, stroke: Stroke::Solid, width: 2, points }
 }

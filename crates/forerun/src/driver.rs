@@ -8,6 +8,7 @@ mod decoupled;
 mod direct_change;
 mod frame_notes;
 mod physics;
+mod reach;
 mod threads;
 
 pub use clock::Clock;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use forerun::{PlaybackSettings, Scene};
+use forerun::{BodyId, BodyKind, Playback, PlaybackSettings, Scene};
 
 use super::run::{DISSERTATION_FRAME_SECONDS, play_with_bar};
 use crate::args::{ExperimentArg, ExperimentArgs};
@@ -83,13 +83,22 @@ fn run_plan(plan: &Plan, args: &ExperimentArgs, note: &str) -> Result<Vec<Outcom
         make_folder(&variant_folder)?;
         let playback = play_with_bar(&scene, &settings)?;
         write_playback(&playback, &variant_folder)?;
-        outcomes.push(Outcome { label, playback });
+        let highest_m = highest_m(&scene, &playback)?;
+        outcomes.push(Outcome { label, playback, highest_m });
     }
     for figure in plan.figures {
         draw(&figure, &outcomes, &folder)?;
     }
     write_text(&folder.join("report.md"), &experiment::markdown(plan, &outcomes, note))?;
     Ok(outcomes)
+}
+
+/// Bodies that commands add come after those of the scene, and are not fixed in these experiments.
+fn highest_m(scene: &Scene, playback: &Playback) -> Result<f32, Failure> {
+    let defs = scene.bodies().map_err(|error| Failure::Input(error.to_string()))?;
+    let moves = |body: &BodyId| defs.get(body.0 as usize).is_none_or(|def| def.kind != BodyKind::Fixed);
+    let moving = playback.last_poses.iter().filter(|(body, _)| moves(body));
+    Ok(moving.map(|(_, pose)| pose.position.y).fold(f32::NEG_INFINITY, f32::max))
 }
 
 fn draw(figure: &Figure, outcomes: &[Outcome], folder: &Path) -> Result<(), Failure> {
@@ -109,7 +118,7 @@ fn draw(figure: &Figure, outcomes: &[Outcome], folder: &Path) -> Result<(), Fail
 }
 
 fn summarise(plan: &Plan, outcomes: &[Outcome], out: &Path) -> Result<(), Failure> {
-    for Outcome { label, playback } in outcomes {
+    for Outcome { label, playback, .. } in outcomes {
         let report = &playback.report;
         print(&format!(
             "{:<12} {:<24} late {:>4} of {:>4}   longest {:>7.1} ms   delay {:>7.3} s   queue {} to {}",

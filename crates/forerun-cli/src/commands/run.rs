@@ -76,10 +76,20 @@ fn write_files(playback: &Playback, folder: &Path) -> Result<Vec<PathBuf>, Failu
     write_playback(playback, folder)?;
     let Report { scene, driver, .. } = &playback.report;
     let recorded = Recorded { label: driver, rows: &playback.rows };
-    let queue = figures::queue(&format!("{scene}, {driver}: states in the queue"), recorded.rows);
+    let first = match driver.as_str() {
+        // The traditional model has no queue; what varies is its time step.
+        "coupled" => {
+            let title = format!("{scene}, {driver}: time step");
+            charts::draw(&[figures::time_steps(&title, &[recorded])], &folder.join("time_step"))?
+        }
+        _ => {
+            let title = format!("{scene}, {driver}: states in the queue");
+            charts::draw(&[figures::queue(&title, recorded.rows)], &folder.join("queue"))?
+        }
+    };
     let times = figures::times(&format!("{scene}, {driver}: time shown and computed"), recorded, None);
     let mut files = vec![folder.join("queue.csv"), folder.join("report.json")];
-    files.extend(charts::draw(&[queue], &folder.join("queue"))?);
+    files.extend(first);
     files.extend(charts::draw(&[times], &folder.join("time"))?);
     Ok(files)
 }

@@ -10,6 +10,8 @@ use super::plan::{Figure, Plan};
 pub(crate) struct Outcome {
     pub(crate) label: &'static str,
     pub(crate) playback: Playback,
+    /// Height of the highest body that is not fixed, at the end. Metres.
+    pub(crate) highest_m: f32,
 }
 
 /// One row of the table: its name and what it says of a run.
@@ -31,7 +33,7 @@ const ROWS: [Row; 12] = [
     ("shortest time step, ms", |o| format!("{:.2}", shortest_step_ms(&o.playback))),
     ("states computed", |o| o.playback.rows.iter().map(|row| row.computed).sum::<u64>().to_string()),
     ("states computed again", |o| o.playback.report.recomputed.to_string()),
-    ("centre of the highest body at the end, m", |o| format!("{:.3}", highest_m(&o.playback))),
+    ("centre of the highest body at the end, m", |o| format!("{:.3}", o.highest_m)),
 ];
 
 /// The page of one experiment. `note` is a line of its own, or empty.
@@ -83,8 +85,4 @@ fn shortest_step_ms(playback: &Playback) -> f64 {
     let later = playback.rows.get(1..).unwrap_or_default();
     let shortest = later.iter().map(|row| row.time_step_s).fold(f64::INFINITY, f64::min);
     if shortest.is_finite() { 1000.0 * shortest } else { 0.0 }
-}
-
-fn highest_m(playback: &Playback) -> f32 {
-    playback.last_poses.iter().map(|(_, pose)| pose.position.y).fold(f32::NEG_INFINITY, f32::max)
 }

@@ -3,7 +3,6 @@
 //! Promise: no call here waits for a step. What the physics knows comes by one atomic read, what the user does goes by a bounded queue.
 
 use std::fmt;
-use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
@@ -13,6 +12,7 @@ use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Snapsho
 
 use super::frame_notes::FrameNote;
 use super::physics::{self, Hinder, Shared};
+use super::reach::Reach;
 use crate::{BodyDef, BodyId, Threads};
 
 /// How the physics thread works.
@@ -45,6 +45,8 @@ pub struct Picture {
     pub frame: Frame,
     /// How that frame was computed; none while it is not.
     pub note: Option<FrameNote>,
+    /// How far back commands threw the physics since the picture before: the last frame that was true for all bodies right after.
+    pub dropped_to: Option<Frame>,
     /// Work of the physics so far.
     pub stats: Stats,
 }
@@ -58,6 +60,7 @@ pub struct Decoupled {
     refusals: Receiver<(CommandKey, CommandError)>,
     frame_seconds: f64,
     time_s: f64,
+    next_body: BodyId,
     next_sequence: u64,
 }
 
@@ -112,14 +115,16 @@ impl Decoupled {
         let snapshot = timeline.snapshot();
         let frame_seconds = f64::from(snapshot.frame_seconds());
         let next_body = timeline.reserve_body();
-        let shared = Arc::new(Shared::new(&timeline, next_body));
+        let reach = Reach::new(timeline.settings().lookahead);
+        let shared = Arc::new(Shared::new(&timeline));
         let physics = physics::Physics {
             timeline,
             shared: Arc::clone(&shared),
             commands: command_queue,
             refusals: refusal_queue,
-            reserved: next_body,
             command_capacity: settings.command_capacity,
+            reach,
+            pictures: 0,
             hinder,
         };
         let thread = physics::spawn(physics, settings.threads)
@@ -131,6 +136,7 @@ impl Decoupled {
             refusals,
             frame_seconds,
             time_s: 0.0,
+            next_body,
             next_sequence: 0,
         })
     }
@@ -144,7 +150,7 @@ impl Decoupled {
         self.time_s = self.time_s.max(time_s);
         self.shared.tell_display(self.displayed_frame());
         self.alive()?;
-        Ok(self.last_picture())
+        Ok(Picture { dropped_to: self.shared.take_drop(), ..self.last_picture() })
     }
 
     /// The picture at the last display time, with what physics knows by now.
@@ -157,6 +163,7 @@ impl Decoupled {
             time_s: self.time_s,
             frame,
             note: self.shared.notes.read(frame.min(published.snapshot.horizon())),
+            dropped_to: None,
             stats: published.stats,
         }
     }
@@ -184,9 +191,11 @@ impl Decoupled {
         Ok(body)
     }
 
-    /// A name for a body to be added by a command of one's own.
+    /// A name for a body to be added by a command of one's own. The timeline learns it with that command.
     pub fn reserve_body(&mut self) -> BodyId {
-        BodyId(self.shared.next_body.fetch_add(1, Ordering::Relaxed))
+        let body = self.next_body;
+        self.next_body = BodyId(body.0 + 1);
+        body
     }
 
     /// A command with a frame of its own, possibly in the past, as they come from a network. Local changes use source 0.
@@ -212,9 +221,11 @@ impl Decoupled {
 
     /// The last frame at or before the display time.
     fn displayed_frame(&self) -> Frame {
-        // As in the dissertation's algorithm 1, a time within a hair of a frame is that frame: k·h/h may round to below k.
-        const HAIR: f64 = 1e-6;
-        Frame((self.time_s / self.frame_seconds + HAIR) as u64)
+        // As in the dissertation's algorithm 1, a time within a hair of a frame is that frame: k·h/h may round to below k. The hair is
+        // that of the snapshot's sampling, so that the frame is the one that is shown.
+        const HAIR: f64 = 1e-9;
+        let frames = self.time_s / self.frame_seconds;
+        Frame((frames + HAIR * frames.max(1.0)) as u64)
     }
 
     fn alive(&self) -> Result<(), DriverError> {

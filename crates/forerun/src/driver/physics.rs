@@ -7,7 +7,7 @@
 use std::any::Any;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
@@ -18,10 +18,8 @@ use forerun_timeline::{
 };
 
 use super::frame_notes::{FrameNote, FrameNotes};
-use crate::{BodyId, Threads};
-
-/// Frames whose notes are kept: more than a sensible lookahead, in 128 KiB. With a longer one, far frames have no notes.
-const NOTES_KEPT: usize = 1 << 14;
+use super::reach::Reach;
+use crate::Threads;
 
 /// Done after every computed frame.
 pub(super) type Hinder = Box<dyn FnMut() + Send>;
@@ -41,36 +39,46 @@ pub(super) struct Shared {
     pub(super) notes: FrameNotes,
     /// Message of a panic of the physics thread; locked only after it has ended.
     pub(super) panic: Mutex<Option<String>>,
-    /// The first body name that is not given away.
-    pub(super) next_body: AtomicU32,
+    /// The earliest frame up to which all was true right after commands were heard, since the display last asked.
+    dropped_to: AtomicU64,
     display: AtomicU64,
+    /// Pictures asked for so far.
+    pictures: AtomicU64,
     stopping: AtomicBool,
     sleeper: OnceLock<Thread>,
 }
 
 impl Shared {
-    /// `next_body` is the last name that the timeline gave away, and nobody has used.
-    pub(super) fn new(timeline: &Timeline, next_body: BodyId) -> Self {
+    pub(super) fn new(timeline: &Timeline) -> Self {
+        let settings = timeline.settings();
+        // The newest note is at most the lookahead after the displayed frame; what is kept of the past may be shown too.
+        let notes_kept = settings.lookahead as usize + settings.past as usize + 2;
         Shared {
             published: ArcSwap::from_pointee(Published {
                 snapshot: timeline.snapshot(),
                 stats: timeline.stats(),
             }),
-            notes: FrameNotes::with_capacity(NOTES_KEPT),
+            notes: FrameNotes::with_capacity(notes_kept),
             panic: Mutex::new(None),
-            next_body: AtomicU32::new(next_body.0),
+            dropped_to: AtomicU64::new(u64::MAX),
             display: AtomicU64::new(0),
+            pictures: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
             sleeper: OnceLock::new(),
         }
     }
 
-    /// Tells the physics which frame the display has reached.
+    /// Tells the physics that a picture of this frame is shown.
     pub(super) fn tell_display(&self, frame: Frame) {
         // Unparking orders these stores before what the woken thread reads; a busy one reads them a frame later, which is soon enough.
-        if self.display.swap(frame.0, Ordering::Relaxed) != frame.0 {
-            self.wake();
-        }
+        self.display.store(frame.0, Ordering::Relaxed);
+        self.pictures.fetch_add(1, Ordering::Relaxed);
+        self.wake();
+    }
+
+    /// How far back commands have thrown the physics since the last call; none when no command came.
+    pub(super) fn take_drop(&self) -> Option<Frame> {
+        Some(self.dropped_to.swap(u64::MAX, Ordering::Relaxed)).filter(|frame| *frame != u64::MAX).map(Frame)
     }
 
     /// Asks the physics to end.
@@ -94,10 +102,11 @@ pub(super) struct Physics {
     pub(super) shared: Arc<Shared>,
     pub(super) commands: Receiver<Command>,
     pub(super) refusals: SyncSender<(CommandKey, CommandError)>,
-    /// The last body name that the timeline gave away.
-    pub(super) reserved: BodyId,
     /// Commands heard at a time, so that a flood of them cannot keep physics from its work.
     pub(super) command_capacity: usize,
+    pub(super) reach: Reach,
+    /// Pictures that the reach has grown for.
+    pub(super) pictures: u64,
     pub(super) hinder: Hinder,
 }
 
@@ -128,8 +137,8 @@ impl Physics {
     fn run(&mut self) {
         while !self.shared.stopping.load(Ordering::Relaxed) {
             self.hear_commands();
-            self.timeline.set_display(Frame(self.shared.display.load(Ordering::Relaxed)));
-            match self.timeline.advance() {
+            self.learn_display();
+            match self.advance() {
                 Progress::Advanced(advance) => {
                     let slices_max = u8::try_from(advance.slices_max).unwrap_or(u8::MAX);
                     let areas_active = self.timeline.areas_active(advance.frame);
@@ -142,6 +151,22 @@ impl Physics {
         }
     }
 
+    /// Learns what is shown, and how far ahead of it to go.
+    fn learn_display(&mut self) {
+        self.timeline.set_display(Frame(self.shared.display.load(Ordering::Relaxed)));
+        let pictures = self.shared.pictures.load(Ordering::Relaxed);
+        if pictures != self.pictures {
+            self.pictures = pictures;
+            self.reach.grow();
+        }
+    }
+
+    /// The next frame of work, as far as the reach goes.
+    fn advance(&mut self) -> Progress {
+        let reached = self.timeline.display().plus(u64::from(self.reach.frames()));
+        if self.timeline.valid_to() >= reached { Progress::Idle } else { self.timeline.advance() }
+    }
+
     /// Takes the commands that wait.
     fn hear_commands(&mut self) {
         let heard: Vec<Command> = self.commands.try_iter().take(self.command_capacity).collect();
@@ -149,25 +174,15 @@ impl Physics {
             return;
         }
         for command in heard {
-            if let Change::Add { body, .. } = &command.change {
-                self.reserve_up_to(*body);
-            }
             let key = command.key;
             if let Err(error) = self.timeline.submit(command) {
                 // When it is full, nobody has asked for refusals for a whole queue's length, and nobody wants this one either.
                 let _ = self.refusals.try_send((key, error));
             }
         }
+        self.reach.shorten();
+        self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
         self.publish();
-    }
-
-    /// The display gives names to new bodies itself, so as not to wait for an answer; here the timeline learns them. A name that
-    /// was not given by the display stays unknown, and the timeline refuses it.
-    fn reserve_up_to(&mut self, body: BodyId) {
-        let given = self.shared.next_body.load(Ordering::Relaxed);
-        while self.reserved < body && self.reserved.0 + 1 < given {
-            self.reserved = self.timeline.reserve_body();
-        }
     }
 
     fn publish(&self) {

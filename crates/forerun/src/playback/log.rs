@@ -11,10 +11,14 @@ pub struct QueueRow {
     pub time_display_s: f64,
     /// How far the physics was computed: T_F, the earliest horizon of a body. Seconds.
     pub time_physics_s: f64,
+    /// The same right after a command came since the picture before, when some states had just gone out of date; else the same.
+    pub time_physics_low_s: f64,
     /// Fewest states that a body had ahead of the picture.
     pub queue_min: u32,
     /// Most states that a body had ahead of the picture.
     pub queue_max: u32,
+    /// The fewest right after a command came since the picture before; else the same as `queue_min`.
+    pub queue_low: u32,
     /// Bodies that had no true state for the display time, and were shown as they last were.
     pub starved: u32,
     /// Most slices that an island of the displayed frame was cut into (the dissertation's return in time); 1 when none was.
@@ -35,27 +39,15 @@ pub struct QueueRow {
 
 impl QueueRow {
     /// The header of `queue.csv`.
-    pub const HEADER: &str = "time_real_s,time_display_s,time_physics_s,queue_min,queue_max,starved,slices_max,time_step_s,\
-                              areas_active,computed,recomputed,interval_ms,wait_ms";
+    pub const HEADER: &str = "time_real_s,time_display_s,time_physics_s,queue_min,queue_max,slices_max,areas_active,recomputed,\
+                              computed,starved,time_step_s,queue_low,time_physics_low_s,interval_ms,wait_ms";
 
     fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
-        writeln!(
-            out,
-            "{:.6},{:.6},{:.6},{},{},{},{},{:.6},{},{},{},{:.3},{:.3}",
-            self.time_real_s,
-            self.time_display_s,
-            self.time_physics_s,
-            self.queue_min,
-            self.queue_max,
-            self.starved,
-            self.slices_max,
-            self.time_step_s,
-            self.areas_active,
-            self.computed,
-            self.recomputed,
-            self.interval_ms,
-            self.wait_ms,
-        )
+        write!(out, "{:.6},{:.6},{:.6},", self.time_real_s, self.time_display_s, self.time_physics_s)?;
+        write!(out, "{},{},{},", self.queue_min, self.queue_max, self.slices_max)?;
+        write!(out, "{},{},{},{},", self.areas_active, self.recomputed, self.computed, self.starved)?;
+        write!(out, "{:.6},{},{:.6},", self.time_step_s, self.queue_low, self.time_physics_low_s)?;
+        writeln!(out, "{:.3},{:.3}", self.interval_ms, self.wait_ms)
     }
 }
 
@@ -79,7 +71,7 @@ mod tests {
         write_queue_csv(&[row, row], &mut out).expect("a Vec takes everything");
         let text = String::from_utf8(out).expect("digits and commas");
         let fields: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
-        assert_eq!(fields, [13, 13, 13]);
+        assert_eq!(fields, [15, 15, 15]);
         assert!(
             text.lines().nth(1).is_some_and(|line| line.starts_with("0.500000,0.000000,0.000000,0,100,"))
         );

@@ -39,9 +39,11 @@ pub fn play(
     let length = Duration::from_secs_f64(settings.seconds);
     let start = clock.now();
     let (mut due, mut rows) = (Duration::ZERO, Vec::<QueueRow>::new());
-    while due < length {
+    // Half an interval is left off, so that rounding does not add a picture at the very end.
+    while due + interval / 2 < length {
         clock.wait_until(start + due);
-        let began = clock.now() - start;
+        // The first picture is of time 0, however long it took to get here.
+        let began = if rows.is_empty() { Duration::ZERO } else { clock.now() - start };
         let mut row = show.picture(began)?;
         let shown = clock.now() - start;
         row.time_real_s = shown.as_secs_f64();

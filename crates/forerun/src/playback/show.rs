@@ -98,10 +98,14 @@ impl DecoupledShow {
         let physics_s = snapshot.valid_to().seconds(snapshot.frame_seconds());
         let slices_max = picture.note.map_or(1, |note| u32::from(note.slices_max));
         let (ahead, edits) = (picture.stats.ahead.recomputed, picture.stats.edits.recomputed);
+        let queue_min = small(snapshot.queue_min(picture.time_s));
+        let low = picture.dropped_to.map_or(snapshot.valid_to(), |frame| frame.min(snapshot.valid_to()));
         let row = QueueRow {
             time_display_s: picture.time_s.min(physics_s),
             time_physics_s: physics_s,
-            queue_min: small(snapshot.queue_min(picture.time_s)),
+            time_physics_low_s: low.seconds(snapshot.frame_seconds()),
+            queue_min,
+            queue_low: queue_min.min(small(low.since(picture.frame))),
             queue_max: small(snapshot.queue_max(picture.time_s)),
             starved: starved as u32,
             slices_max,
@@ -159,6 +163,7 @@ impl CoupledShow {
         Ok(QueueRow {
             time_display_s: time_s,
             time_physics_s: time_s,
+            time_physics_low_s: time_s,
             slices_max,
             time_step_s: (time_s - before_s) / f64::from(slices_max),
             computed: if time_s > before_s { self.driver.world().bodies().len() as u64 } else { 0 },

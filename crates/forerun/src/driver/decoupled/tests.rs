@@ -6,7 +6,7 @@ use super::*;
 use crate::{Clock, Cuboid, Environment, Pose, Shape, Sphere, TimelineSettings, Vec3};
 
 const LOOKAHEAD: u32 = 20;
-const FRAME_S: f64 = 1.0 / 60.0;
+const FRAME_S: f64 = (1.0_f32 / 60.0) as f64;
 
 /// A ball above the ground and another far away.
 fn timeline() -> Timeline {
@@ -87,13 +87,37 @@ fn a_local_change_acts_on_the_first_frame_after_the_displayed_one() {
     let impulse = Vec3::X * 500.0;
     let key = driver.change(Change::Push { body: BodyId(1), impulse, at_point: None }).expect("room");
     assert_eq!(key.frame, Frame(11));
-    assert!(eventually(|| driver.last_picture().stats.edits.recomputed > 0 && full(&driver)));
+    // Each picture lets the physics go further again.
+    assert!(eventually(|| {
+        driver.show(10.5 * FRAME_S).expect("physics lives");
+        driver.last_picture().stats.edits.recomputed > 0 && full(&driver)
+    }));
     let after = driver.last_picture();
     let state =
         |picture: &Picture, body, frame| *picture.snapshot.state(BodyId(body), Frame(frame)).expect("kept");
     assert!(state(&after, 1, 10).same_bits(&state(&before, 1, 10)), "a state on the screen was taken back");
     assert!(state(&after, 1, 11).velocity.x > 0.5);
     assert!(state(&after, 2, 20).same_bits(&state(&before, 2, 20)), "a body out of reach was changed");
+}
+
+#[test]
+fn a_long_drag_keeps_physics_from_computing_what_the_next_move_throws_away() {
+    let mut driver = slow(0);
+    assert!(eventually(|| full(&driver)));
+    let valid_to = |driver: &Decoupled| driver.last_picture().snapshot.valid_to();
+    for move_number in 0..10_u8 {
+        let velocity = Vec3::X * f32::from(move_number + 1);
+        let body = BodyId(2);
+        driver.change(Change::SetVelocity { body, velocity, angular_velocity: Vec3::ZERO }).expect("room");
+        assert!(eventually(|| valid_to(&driver) < Frame(u64::from(LOOKAHEAD))), "move {move_number}");
+        driver.show(0.0).expect("physics lives");
+    }
+    std::thread::sleep(Duration::from_millis(20));
+    assert!(valid_to(&driver) < Frame(u64::from(LOOKAHEAD)), "{}", valid_to(&driver));
+    assert!(eventually(|| {
+        driver.show(0.0).expect("physics lives");
+        full(&driver)
+    }));
 }
 
 #[test]
@@ -137,10 +161,14 @@ fn a_command_that_the_timeline_refuses_comes_back_with_the_reason() {
 fn added_bodies_get_their_names_without_asking_the_physics() {
     let mut driver = slow(0);
     let ball = || BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::new(-20.0, 3.0, 0.0));
-    let (first, second) = (driver.add(ball()).expect("room"), driver.add(ball()).expect("room"));
-    assert_eq!((first, second), (BodyId(3), BodyId(4)));
+    let (first, unused) = (driver.add(ball()).expect("room"), driver.reserve_body());
+    let second = driver.add(ball()).expect("room");
+    assert_eq!((first, unused, second), (BodyId(3), BodyId(4), BodyId(5)));
     let last = Frame(u64::from(LOOKAHEAD));
-    assert!(eventually(|| driver.last_picture().snapshot.state(second, last).is_some()));
+    assert!(eventually(|| {
+        driver.show(0.0).expect("physics lives");
+        full(&driver) && driver.last_picture().snapshot.state(second, last).is_some()
+    }));
     assert_eq!(driver.refusals(), []);
 }
 

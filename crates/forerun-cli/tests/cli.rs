@@ -1,0 +1,197 @@
+//! The command line as scripts see it: exit codes, JSON on standard output, files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn forerun(arguments: &[&str]) -> Output {
+    let command = Command::new(env!("CARGO_BIN_EXE_forerun")).args(arguments).output();
+    command.expect("the program starts")
+}
+
+fn code(output: &Output) -> Option<i32> {
+    output.status.code()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("output is UTF-8")
+}
+
+/// Standard output as one JSON object and nothing else.
+fn json(output: &Output) -> Value {
+    assert_eq!(code(output), Some(0), "{}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("one JSON object")
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().expect("an object").keys().map(String::as_str).collect()
+}
+
+/// A folder of its own for each test, made new.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("the target folder is ours");
+    folder
+}
+
+#[test]
+fn wrong_usage_and_bad_input_end_with_2_and_a_message_on_standard_error() {
+    let cases: [(&[&str], &str); 9] = [
+        (&["fly"], "unrecognized subcommand"),
+        (&["run"], "SCENE"),
+        (&["run", "nosuch"], "there is no built-in scene \"nosuch\""),
+        (&["run", "pyramid:x"], "whole number"),
+        (&["run", "no/such/file.toml"], "no/such/file.toml: cannot be read"),
+        (&["run", "stack", "--seconds", "-3"], "--seconds"),
+        (&["validate", "nosuch"], "there is no case \"nosuch\""),
+        (&["view"], "not there yet"),
+        (&["bake", "stack", "-o", "x.glb"], "not there yet"),
+    ];
+    for (arguments, message) in cases {
+        let output = forerun(arguments);
+        assert_eq!(code(&output), Some(2), "{arguments:?}");
+        assert!(text(&output.stderr).contains(message), "{arguments:?}: {}", text(&output.stderr));
+        assert!(output.stdout.is_empty(), "{arguments:?}: {}", text(&output.stdout));
+    }
+}
+
+#[test]
+fn a_mistake_in_a_file_is_named_with_its_line() {
+    let file = folder("bad_file").join("bad.toml");
+    std::fs::write(&file, "name = \"bad\"\n[[bodies]]\nshape = { sphere = { radius = -1 } }\n")
+        .expect("writes");
+    let output = forerun(&["run", file.to_str().expect("a plain path")]);
+    assert_eq!(code(&output), Some(2));
+    let message = text(&output.stderr);
+    assert!(message.contains("bad.toml:3:") && message.contains("radius"), "{message}");
+}
+
+#[test]
+fn run_writes_a_row_per_picture_a_report_and_charts() {
+    let out = folder("run");
+    let folder_name = out.to_str().expect("a plain path");
+    let arguments = ["run", "stack:3", "--seconds", "0.5", "--fps", "20", "--threads", "1", "--json"];
+    let report = json(&forerun(&[&arguments[..], &["--out", folder_name]].concat()));
+    let fields = [
+        "scene",
+        "driver",
+        "seconds",
+        "pictures",
+        "late_pictures",
+        "starved_pictures",
+        "longest_stall_ms",
+        "delay_max_s",
+        "queue_min",
+        "queue_max",
+        "slices_max",
+        "recomputed",
+    ];
+    let mut expected = fields.to_vec();
+    let mut found = keys(&report);
+    expected.sort_unstable();
+    found.sort_unstable();
+    assert_eq!(found, expected);
+    assert_eq!((&report["scene"], &report["driver"]), (&Value::from("stack"), &Value::from("decoupled")));
+    let written: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("report.json")).expect("report.json"))
+            .expect("JSON");
+    assert_eq!(written, report);
+    let csv = std::fs::read_to_string(out.join("queue.csv")).expect("queue.csv");
+    assert!(csv.starts_with(
+        "time_real_s,time_display_s,time_physics_s,queue_min,queue_max,slices_max,areas_active,recomputed,"
+    ));
+    assert_eq!(csv.lines().count() as u64, 1 + report["pictures"].as_u64().expect("a number"));
+    for chart in ["queue.svg", "queue.png", "time.svg", "time.png"] {
+        let bytes = std::fs::metadata(out.join(chart)).map_or(0, |file| file.len());
+        assert!(bytes > 2000, "{chart} has {bytes} bytes");
+    }
+}
+
+#[test]
+fn the_coupled_driver_has_no_queue() {
+    let report = json(&forerun(&["run", "stack:3", "--seconds", "0.3", "--driver", "coupled", "--json"]));
+    assert_eq!((&report["queue_max"], &report["recomputed"]), (&Value::from(0), &Value::from(0)));
+}
+
+#[test]
+fn check_finds_no_difference_and_says_what_it_compared() {
+    let arguments = ["check", "stack:3", "--edits", "4", "--frames", "40", "--threads", "1,2", "--json"];
+    let verdict = json(&forerun(&arguments));
+    assert_eq!(verdict["mismatches"], 0);
+    assert_eq!(verdict["threads"], serde_json::json!([1, 2]));
+    for field in ["scene", "edits", "seed", "frames", "affected", "recomputed", "full"] {
+        assert!(!verdict[field].is_null(), "{field}");
+    }
+    for (times, part) in [("edit_ms", "mean"), ("edit_ms", "median"), ("full_ms", "max")] {
+        assert!(verdict[times][part].is_f64(), "{times}.{part}");
+    }
+    assert!(verdict["recomputed"].as_u64() <= verdict["full"].as_u64());
+}
+
+#[test]
+fn bench_measures_each_scene_and_gives_the_same_hash_for_any_thread_count() {
+    let one = json(&forerun(&["bench", "stack:3", "dominoes:10", "--frames", "30", "--json"]));
+    let two =
+        json(&forerun(&["bench", "stack:3", "dominoes:10", "--frames", "30", "--threads", "2", "--json"]));
+    for place in 0..2 {
+        let (one, two) = (&one["scenes"][place], &two["scenes"][place]);
+        assert_eq!(one["state_hash"], two["state_hash"]);
+        for field in [
+            "scene",
+            "bodies",
+            "frames",
+            "threads",
+            "first_step_ms",
+            "step_ms",
+            "stage_ms",
+            "body_steps_per_s",
+            "overlap_max_m",
+            "overlap_end_m",
+            "energy_max_over_initial",
+            "speed_end_mean",
+            "bytes_per_body_frame",
+        ] {
+            assert!(!one[field].is_null(), "{field}");
+        }
+        let stages =
+            ["collisions", "velocities", "contact_graph", "contacts", "shock_propagation", "positions"];
+        assert!(stages.iter().all(|stage| one["stage_ms"][stage].is_f64()));
+        let energy = one["energy_max_over_initial"].as_f64().expect("a number");
+        assert!((1.0..1.01).contains(&energy), "{energy}");
+    }
+}
+
+#[test]
+fn scenes_are_listed_and_printed_as_files_that_can_be_run() {
+    let list = forerun(&["scenes"]);
+    assert!(text(&list.stdout).contains("dominoes"));
+    let file = folder("scenes").join("small.toml");
+    std::fs::write(&file, forerun(&["scenes", "stack:2"]).stdout).expect("writes");
+    let name = file.to_str().expect("a plain path");
+    let report = json(&forerun(&["bench", name, "--frames", "5", "--json"]));
+    let built_in = json(&forerun(&["bench", "stack:2", "--frames", "5", "--json"]));
+    assert_eq!(report["scenes"][0]["state_hash"], built_in["scenes"][0]["state_hash"]);
+}
+
+#[test]
+fn validate_prints_a_table_and_ends_well() {
+    let output = forerun(&["validate", "free_fall"]);
+    assert_eq!(code(&output), Some(0));
+    assert!(text(&output.stdout).starts_with("| case | figure | value | limit | |\n|---|"));
+}
+
+#[test]
+fn an_experiment_puts_the_drivers_beside_each_other() {
+    let out = folder("experiment");
+    let output = forerun(&["experiment", "stack", "--seconds", "0.3", "--out", out.to_str().expect("plain")]);
+    assert_eq!(code(&output), Some(0), "{}", text(&output.stderr));
+    let page = std::fs::read_to_string(out.join("stack/report.md")).expect("report.md");
+    assert!(page.contains("| decoupled | without return in time | coupled |"), "{page}");
+    for file in
+        ["decoupled/queue.csv", "without_return_in_time/queue.csv", "coupled/queue.csv", "figure_5_13.png"]
+    {
+        assert!(out.join("stack").join(file).exists(), "{file}");
+    }
+}
