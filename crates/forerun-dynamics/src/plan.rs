@@ -43,7 +43,7 @@ impl Plan {
         let mut plan = Plan {
             islands: Vec::new(),
             island_of: vec![Plan::NONE; members.len()],
-            resting: resting(members, &roots, environment),
+            resting: resting(group, &roots, environment),
         };
         plan.sort_contacts(group, &roots);
         for island in &mut plan.islands {
@@ -115,12 +115,20 @@ impl Plan {
 }
 
 /// Members of islands that are at a fixpoint: every dynamic one has been at rest with all of its island for a frame, and nothing moves into it.
-fn resting(members: &[Member], roots: &Islands, environment: &Environment) -> Vec<bool> {
+fn resting(group: &Group, roots: &Islands, environment: &Environment) -> Vec<bool> {
+    let members = group.members;
     let full = environment.settings.rest_frames();
     let mut awake = vec![full == 0; members.len()];
     for (i, m) in members.iter().enumerate() {
         if m.body.is_dynamic() && m.state.rest <= full {
             awake[roots.root(i)] = true;
+        }
+    }
+    for c in group.contacts {
+        for (driver, driven) in [(c.first, c.second), (c.second, c.first)] {
+            if members[driver as usize].drives() {
+                awake[roots.root(driven as usize)] = true;
+            }
         }
     }
     (members.iter().enumerate()).map(|(i, m)| m.body.is_dynamic() && !awake[roots.root(i)]).collect()

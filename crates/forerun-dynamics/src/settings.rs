@@ -26,6 +26,8 @@ pub struct StepSettings {
     pub substeps: u32,
     /// Sweeps over all contacts in the first substep; later ones do one. Default 3.
     pub first_sweeps: u32,
+    /// The same for islands whose weight the contact graph cannot place: heaps, arches, wedged bodies. Default 12.
+    pub first_sweeps_hard: u32,
     /// Contacts are found this far ahead of touching, and further for fast bodies. Metres, default 0.02.
     pub contact_margin_m: f32,
     /// Overlap that is left alone. Metres, default 0.0005.
@@ -53,6 +55,7 @@ impl Default for StepSettings {
             frame_seconds: 1.0 / 60.0,
             substeps: 4,
             first_sweeps: 3,
+            first_sweeps_hard: 12,
             contact_margin_m: 0.02,
             overlap_allowed_m: 0.0005,
             overlap_recovery: 0.3,
@@ -71,6 +74,10 @@ impl StepSettings {
     /// more says that its whole island is. 0 when rest is off.
     #[must_use]
     pub fn rest_frames(&self) -> u32 {
-        if self.rest_seconds > 0.0 { (self.rest_seconds / self.frame_seconds).max(1.0) as u32 } else { 0 }
+        if self.rest_seconds > 0.0 {
+            (self.rest_seconds / self.frame_seconds + 0.5).max(1.0) as u32
+        } else {
+            0
+        }
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::narrow_phase::{Contact, find_contacts};
 use crate::plan::{Island, Plan, half_thickness, pack};
 use crate::solver::{Batch, fly};
-use crate::{Body, BodyId, BodyState, Environment, Observer, Stage};
+use crate::{Body, BodyId, BodyKind, BodyState, Environment, Observer, Stage};
 
 /// An overlap that a frame makes deeper by this part of the thinner body's half thickness is too deep.
 const DEEP_PART: f32 = 0.1;
@@ -21,6 +21,15 @@ pub struct Member<'a> {
     pub body: &'a Body,
     /// How it is.
     pub state: BodyState,
+}
+
+impl Member<'_> {
+    /// Whether it is a kinematic body in motion: what it touches is pushed, and not at rest.
+    pub(crate) fn drives(&self) -> bool {
+        let zero = forerun_geometry::Vec3::ZERO;
+        self.body.kind == BodyKind::Kinematic
+            && (self.state.velocity != zero || self.state.angular_velocity != zero)
+    }
 }
 
 /// Bodies that touch nobody outside the group.

@@ -95,3 +95,29 @@ fn a_support_that_goes_wakes_what_it_carried() {
         world.states()[2].position.y
     );
 }
+
+#[test]
+fn a_kinematic_body_pushes_what_rests_and_drops_what_it_carried() {
+    // A block at rest on the ground in the way, and one at rest on a kinematic slab that then slides out from under it.
+    let slab = |position: Vec3| {
+        let mut def = cuboid(Vec3::new(0.5, 0.25, 0.5), position);
+        def.kind = forerun_dynamics::BodyKind::Kinematic;
+        def
+    };
+    let mut world = world_of(&[
+        ground(),
+        slab(Vec3::new(-2.0, 0.25, 0.0)),
+        cuboid(Vec3::splat(0.25), Vec3::new(0.0, 0.25, 0.0)),
+        slab(Vec3::new(0.0, 1.0, 5.0)),
+        cuboid(Vec3::splat(0.25), Vec3::new(0.0, 1.5, 5.0)),
+    ]);
+    run(&mut world, 300);
+    let full = world.environment.settings.rest_frames();
+    assert!(world.states()[2].rest > full && world.states()[4].rest > full, "the blocks have not come to rest");
+    world.states_mut()[1].velocity.x = 1.0;
+    world.states_mut()[3].velocity.x = 8.0;
+    run(&mut world, 240);
+    let (pushed, dropped) = (world.states()[2].position, world.states()[4].position);
+    assert!(pushed.x > 2.0, "the kinematic body passed through: {pushed}");
+    assert!((dropped.y - 0.25).abs() < 0.01, "the block hangs at {dropped}");
+}

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use forerun_geometry::contact::contact_manifolds;
-use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Mesh, Sphere};
+use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Hull, Mesh, Sphere};
 use forerun_geometry::{ContactPoint, Manifold, Motion, Placed, Pose, Quat, Shape, Vec3};
 
 #[path = "common/meshes.rs"]
@@ -333,4 +333,91 @@ fn a_box_rests_on_the_ridge_of_a_sheet() {
     assert!(spread.1 - spread.0 > 0.4, "points from x = {} to {}", spread.0, spread.1);
     // Points of the box's edges that are below the ridge see its slopes.
     assert!(points.iter().all(|p| p.normal.y > 0.85));
+}
+
+#[test]
+fn a_bar_pressed_into_another_is_pushed_back_the_way_it_came() {
+    let frame = shape(meshes::frame(0.5, 0.04));
+    for overlap in [0.005_f32, 0.015, 0.025] {
+        let mut upper = at(&frame, Vec3::new(0.013, 0.08 - overlap, 0.021));
+        upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, 0.7);
+        let points = all_points(&contact(&at(&frame, Vec3::ZERO), &upper));
+        assert!(points.len() >= 4);
+        for p in &points {
+            assert!(p.normal.y > -0.2, "pulled in at overlap {overlap}: {p:?}");
+        }
+        let deepest = points.iter().min_by(|a, b| a.separation.total_cmp(&b.separation)).expect("points");
+        assert!(deepest.normal.y > 0.95 && (deepest.separation + overlap).abs() < 0.004, "{deepest:?}");
+    }
+}
+
+#[test]
+fn a_ball_in_the_hole_of_a_torus_is_held_all_around() {
+    // The hole has a radius of 0.3; a ball of 0.35 sits in its upper mouth where (0.5)² + y² = (0.35 + 0.2)².
+    let (torus, ball) = (torus(), Shape::Sphere(Sphere { radius: 0.35 }));
+    let height = (0.55_f32 * 0.55 - 0.25).sqrt();
+    let points = all_points(&contact(&at(&torus, Vec3::ZERO), &at(&ball, Vec3::Y * (height - 0.003))));
+    assert!(points.len() >= 3);
+    let middle = points.iter().map(|p| p.position).sum::<Vec3>() / points.len() as f32;
+    assert!(Vec3::new(middle.x, 0.0, middle.z).length() < 0.1, "all on one side: {middle}");
+    for p in &points {
+        // Facets are up to 4 mm inside the torus.
+        assert!(p.separation > -0.005 && p.separation < 0.012, "{}", p.separation);
+    }
+}
+
+#[test]
+fn a_hull_stands_on_a_mesh_like_the_box_that_it_is() {
+    let plate = shape(meshes::cuboid(Vec3::new(2.0, 0.1, 2.0)));
+    let half = Vec3::new(0.3, 0.2, 0.1);
+    let corners: Vec<Vec3> = meshes::cuboid(half).0;
+    let hull = Shape::Hull(Arc::new(Hull::new(&corners).expect("a box")));
+    let cuboid = Shape::Cuboid(Cuboid { half_extents: half });
+    let found = [&hull, &cuboid].map(|shape| {
+        let mut upper = at(shape, Vec3::new(0.2, 0.3, 0.1));
+        upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, 0.3);
+        contact(&at(&plate, Vec3::ZERO), &upper)
+    });
+    assert_eq!(found[0].len(), found[1].len());
+    assert!((smallest_separation(&found[0]) - smallest_separation(&found[1])).abs() < 1e-5);
+}
+
+#[test]
+fn a_box_stands_on_one_of_the_same_size() {
+    // Every corner of one is exactly on an edge of the other: nothing says by itself which face it came through.
+    let half = Vec3::new(0.3, 0.2, 0.1);
+    let mesh = shape(meshes::cuboid(half));
+    let hull = Shape::Hull(Arc::new(Hull::new(&meshes::cuboid(half).0).expect("a box")));
+    let cuboid = Shape::Cuboid(Cuboid { half_extents: half });
+    for (name, lower, upper) in
+        [("mesh", &mesh, &mesh), ("cuboid", &cuboid, &mesh), ("hull", &mesh, &hull), ("box", &mesh, &cuboid)]
+    {
+        for aside in [Vec3::ZERO, Vec3::X * 0.1, Vec3::new(0.001, 0.0, -0.0005)] {
+            for depth in [-0.002, 0.0, 0.01] {
+                let found = contact(&at(lower, Vec3::ZERO), &at(upper, aside + Vec3::Y * (0.4 - depth)));
+                let points = all_points(&found);
+                assert!(points.len() >= 4, "{name}: {} points at depth {depth}, {aside}", points.len());
+                for p in &points {
+                    assert!(
+                        (p.separation + depth).abs() < 2e-3,
+                        "{name}: {} at {depth}, {aside}",
+                        p.separation
+                    );
+                    assert!(p.normal.y > 0.99, "{name}: {} at {depth}, {aside}", p.normal);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bar_past_the_middle_of_another_is_not_pulled_through() {
+    // Sections of 8 cm, 5 cm inside: the nearest way out of the lower bar for the lowest points is down.
+    let frame = shape(meshes::frame(0.5, 0.04));
+    let mut upper = at(&frame, Vec3::new(0.013, 0.03, 0.021));
+    upper.pose.rotation = Quat::from_axis_angle(Vec3::Y, 0.7);
+    let points = all_points(&contact(&at(&frame, Vec3::ZERO), &upper));
+    // Edges may be pushed out askew, but nothing straight down.
+    let down = points.iter().filter(|p| p.normal.y < -0.9).count();
+    assert!(!points.is_empty() && down == 0, "{down} of {} pull it through", points.len());
 }

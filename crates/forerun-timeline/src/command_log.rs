@@ -60,7 +60,8 @@ impl CommandLog {
     /// The changes of gravity at a frame or later.
     pub(crate) fn gravities_from(&self, frame: Frame) -> impl Iterator<Item = (Frame, Vec3)> {
         self.by_key.range(first_key(frame)..).filter_map(|(key, change)| match change {
-            Change::SetGravity { gravity } => Some((key.frame, *gravity)),
+            // Adding +0 makes -0 positive: equal gravity has equal bits.
+            Change::SetGravity { gravity } => Some((key.frame, *gravity + Vec3::ZERO)),
             _ => None,
         })
     }

@@ -11,6 +11,7 @@ use forerun_geometry::Vec3;
 use crate::Frame;
 use crate::command::{Change, CommandKey};
 use crate::effect::body_after;
+use crate::stale::same_body;
 
 /// What one body is from which frame on.
 #[derive(Clone, Debug, Default)]
@@ -96,7 +97,7 @@ impl Definitions {
         let mut current = history.entries.last().and_then(|(_, body)| body.clone());
         for (key, change) in commands {
             let Ok(next) = body_after(current.as_ref(), change, history.def.as_deref()) else { continue };
-            if next == current {
+            if same_body(next.as_ref(), current.as_ref()) {
                 continue;
             }
             current = next;
@@ -146,7 +147,7 @@ fn drop_before<T>(entries: &mut Vec<(Frame, T)>, oldest: Frame) {
 fn share_equal(entries: &mut [(Frame, Option<Arc<Body>>)], old: &[(Frame, Option<Arc<Body>>)]) {
     for (frame, body) in entries {
         if let Some(before) = in_force(old, *frame)
-            && before == body
+            && same_body(before.as_ref(), body.as_ref())
         {
             body.clone_from(before);
         }

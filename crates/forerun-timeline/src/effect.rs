@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyDef, BodyKind, BodyState};
+use forerun_dynamics::{Body, BodyDef, BodyKind, BodyState, Material, Spring};
 use forerun_geometry::Vec3;
 
 use crate::command::Change;
@@ -25,11 +25,29 @@ pub(crate) fn body_after(
     let mut next = Body::clone(body);
     match change {
         Change::Remove { .. } => return Ok(None),
-        Change::Hold { spring, .. } => next.spring = Some(*spring),
+        // Adding +0 makes -0 positive: numbers that are equal have equal bits, so that equal bodies can stand for each other.
+        Change::Hold { spring, .. } => {
+            let Spring { anchor, target, frequency_hz, damping_ratio } = *spring;
+            next.spring = Some(Spring {
+                anchor: anchor + Vec3::ZERO,
+                target: target + Vec3::ZERO,
+                frequency_hz,
+                damping_ratio: damping_ratio + 0.0,
+            });
+        }
         Change::Release { .. } => next.spring = None,
-        Change::SetMaterial { material, .. } => next.material = *material,
-        Change::SetForce { force, torque, .. } => (next.force, next.torque) = (*force, *torque),
-        Change::SetGravityScale { scale, .. } => next.gravity_scale = *scale,
+        Change::SetMaterial { material, .. } => {
+            let Material { friction, static_friction, restitution } = *material;
+            next.material = Material {
+                friction: friction + 0.0,
+                static_friction: static_friction + 0.0,
+                restitution: restitution + 0.0,
+            };
+        }
+        Change::SetForce { force, torque, .. } => {
+            (next.force, next.torque) = (*force + Vec3::ZERO, *torque + Vec3::ZERO);
+        }
+        Change::SetGravityScale { scale, .. } => next.gravity_scale = *scale + 0.0,
         Change::SetKind { kind, .. } => {
             let def = BodyDef { kind: *kind, ..def.ok_or(Ignored)?.clone() };
             let (made, _) = Body::new(&def).map_err(|_| Ignored)?;
@@ -73,4 +91,43 @@ pub(crate) fn state_after(body: &Body, state: &BodyState, change: &Change) -> Re
     let next = next.canonical();
     // Finite numbers can still make an impulse that is not.
     if next.is_finite() { Ok(next) } else { Err(Ignored) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use forerun_dynamics::BodyId;
+    use forerun_geometry::shape::{Cuboid, Shape};
+
+    fn rod() -> (Arc<Body>, BodyState) {
+        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(1.0, 0.1, 0.1) });
+        let (body, state) = Body::new(&BodyDef::new(shape).at(Vec3::new(3.0, 0.0, 0.0))).unwrap();
+        (Arc::new(body), state)
+    }
+
+    #[test]
+    fn an_off_centre_push_turns_a_rod_as_the_formula_says() {
+        let (body, state) = rod();
+        let impulse = Vec3::new(0.0, 5.0, 0.0);
+        let change = Change::Push { body: BodyId(0), impulse, at_point: Some(Vec3::new(4.0, 0.0, 0.0)) };
+        let next = state_after(&body, &state, &change).unwrap();
+        // v = J/m, w = L J / I about z with I = m (1^2 + 0.1^2) / 3.
+        let mass = 1000.0 * 8.0 * 0.01;
+        assert!((next.velocity.y - 5.0 / mass).abs() < 1e-6);
+        let expected = 5.0 / (mass * 1.01 / 3.0);
+        assert!((next.angular_velocity.z - expected).abs() < 1e-5, "{}", next.angular_velocity);
+        assert!(next.angular_velocity.x.abs() + next.angular_velocity.y.abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_not_there_ignores_commands() {
+        let (body, state) = rod();
+        let id = BodyId(0);
+        assert_eq!(body_after(None, &Change::Release { body: id }, None), Err(Ignored));
+        assert_eq!(body_after(Some(&body), &Change::Remove { body: id }, None), Ok(None));
+        let add = Change::Add { body: id, def: Box::new(BodyDef::new(body.shape.clone())) };
+        assert_eq!(body_after(Some(&body), &add, None), Err(Ignored));
+        let push = Change::Push { body: id, impulse: Vec3::splat(3e38), at_point: Some(Vec3::splat(1e9)) };
+        assert_eq!(state_after(&body, &state, &push), Err(Ignored));
+    }
 }

@@ -9,8 +9,8 @@ use super::bodies::Bodies;
 use super::collisions::{Moving, resolve_collisions};
 use super::contact_graph::ContactGraph;
 use super::islands::Islands;
-use super::load::{Load, LoadPass};
-use super::positions::{Ending, moved, settle};
+use super::load::{Load, LoadPass, Strain};
+use super::positions::{Ending, IslandsAt, moved, settle};
 use super::prepare::{Source, prepare};
 use super::shock::propagate_shock;
 use super::sweep::{relax, sweep};
@@ -18,7 +18,10 @@ use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
 use crate::lanes::{Portable, Row};
 use crate::narrow_phase::Contact;
-use crate::{BodyKind, BodyState, Environment, Member};
+use crate::{BodyState, Environment, Member};
+
+/// An island is hard when the load pass leaves more than this part of its weight to the sweeps: stacks and pyramids leave none, a heap most of it.
+const HARD_PART: f64 = 0.1;
 
 /// Some islands, with the bodies that do not yield but that they touch.
 pub(crate) struct Batch<'a> {
@@ -32,7 +35,9 @@ pub(crate) struct Batch<'a> {
     dynamic: Vec<bool>,
     islands: Islands,
     graph: ContactGraph,
+    /// First those of easy islands, then those of hard ones.
     blocks: Vec<Block<Portable>>,
+    easy_blocks: usize,
     spins: Vec<Vec3>,
     bounces: bool,
 }
@@ -57,6 +62,7 @@ impl<'a> Batch<'a> {
             islands,
             graph: ContactGraph::default(),
             blocks: Vec::new(),
+            easy_blocks: 0,
             spins: Vec::new(),
             bounces,
         }
@@ -77,8 +83,13 @@ impl<'a> Batch<'a> {
     pub(crate) fn build_contact_graph(&mut self) {
         let dynamic = &self.dynamic;
         self.graph = ContactGraph::build(self.members.len(), |i| dynamic[i], &self.contacts);
-        self.blocks = arrange(self.members.len(), dynamic, &self.graph, &self.contacts);
-        let loads = self.loads();
+        let (loads, strains) = self.loads();
+        let hard = self.hard(&strains);
+        let is_hard = |k: &u32| hard[self.island_of(&self.contacts[*k as usize])];
+        let (hard, easy): (Vec<u32>, Vec<u32>) = (0..self.contacts.len() as u32).partition(is_hard);
+        self.blocks = arrange(&easy, dynamic, &self.graph, &self.contacts);
+        self.easy_blocks = self.blocks.len();
+        self.blocks.append(&mut arrange(&hard, dynamic, &self.graph, &self.contacts));
         let levels: Vec<u32> = (0..self.members.len()).map(|i| self.graph.level(i)).collect();
         let gravity = self.environment.gravity;
         let source = Source {
@@ -92,7 +103,24 @@ impl<'a> Batch<'a> {
         prepare(&mut self.blocks, &self.bodies, &source);
     }
 
-    fn loads(&self) -> Vec<Load> {
+    /// The root of the island that a contact belongs to.
+    fn island_of(&self, contact: &Contact) -> usize {
+        let (first, second) = (contact.first as usize, contact.second as usize);
+        self.islands.root(if self.dynamic[first] { first } else { second })
+    }
+
+    /// Per island root: whether the load pass fails to place its weight (heaps, arches, wedged bodies), so that it needs more sweeps.
+    fn hard(&self, strains: &[Strain]) -> Vec<bool> {
+        let mut sums = vec![(0.0f64, 0.0f64); strains.len()];
+        for (i, strain) in strains.iter().enumerate() {
+            let sum = &mut sums[self.islands.root(i)];
+            sum.0 += f64::from(strain.weight);
+            sum.1 += f64::from(strain.lost);
+        }
+        sums.into_iter().map(|(weight, lost)| lost > HARD_PART * weight).collect()
+    }
+
+    fn loads(&self) -> (Vec<Load>, Vec<Strain>) {
         LoadPass {
             members: &self.members,
             contacts: &self.contacts,
@@ -139,9 +167,13 @@ impl<'a> Batch<'a> {
             apply_impulses(blocks, &mut bodies.velocities);
             let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
             guard.check(blocks, &before, &mut bodies.velocities, guess);
-            let sweeps = if substep == 0 { settings.first_sweeps } else { 1 };
-            for _ in 0..sweeps {
-                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
+            let (easy, hard) = blocks.split_at_mut(self.easy_blocks);
+            let (first, first_hard) = (settings.first_sweeps, settings.first_sweeps_hard);
+            for _ in 0..if substep == 0 { first } else { 1 } {
+                sweep(easy, &mut bodies.velocities, &bodies.displacements, h);
+            }
+            for _ in 0..if substep == 0 { first_hard } else { 1 } {
+                sweep(hard, &mut bodies.velocities, &bodies.displacements, h);
             }
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);
@@ -152,11 +184,7 @@ impl<'a> Batch<'a> {
     /// Islands that a moving kinematic body touches.
     fn driven(&self) -> Vec<bool> {
         let mut driven = vec![false; self.members.len()];
-        let drives = |i: u32| {
-            let m = &self.members[i as usize];
-            m.body.kind == BodyKind::Kinematic
-                && (m.state.velocity != Vec3::ZERO || m.state.angular_velocity != Vec3::ZERO)
-        };
+        let drives = |i: u32| self.members[i as usize].drives();
         for c in &self.contacts {
             if drives(c.first) {
                 driven[self.islands.root(c.second as usize)] = true;
@@ -188,7 +216,8 @@ impl<'a> Batch<'a> {
         let mut next: Vec<BodyState> = (self.members.iter().enumerate())
             .map(|(i, m)| moved(m, &self.bodies, i, &endings[i], &self.environment))
             .collect();
-        settle(&self.members, &mut next, &endings, &self.islands, &self.environment);
+        let islands = IslandsAt { islands: &self.islands, driven: &self.driven() };
+        settle(&self.members, &mut next, &endings, &islands, &self.environment);
         next
     }
 

@@ -130,16 +130,17 @@ impl<F: Lanes> Block<F> {
     }
 }
 
-/// The blocks of all contacts in the order in which they are solved; only indices are filled in.
+/// The blocks of the chosen contacts (indices, rising) in the order in which they are solved; only indices are filled in.
 pub(crate) fn arrange(
-    count: usize,
+    chosen: &[u32],
     yields: &[bool],
     graph: &ContactGraph,
     contacts: &[Contact],
 ) -> Vec<Block<Portable>> {
-    let by_level = sorted_by_level(graph, contacts);
+    let count = yields.len();
+    let by_level = sorted_by_level(chosen, graph, contacts);
     let mut colouring = Colouring { stamp: vec![u32::MAX; count], used: vec![0; count] };
-    let mut blocks = Vec::with_capacity(contacts.len() / 4 + 8);
+    let mut blocks = Vec::with_capacity(chosen.len() / 4 + 8);
     let mut colours = Vec::new();
     let mut rest = by_level.as_slice();
     while let Some(&head) = rest.first() {
@@ -155,8 +156,8 @@ pub(crate) fn arrange(
 }
 
 /// Indices of the contacts by level; those of one level in their own order.
-fn sorted_by_level(graph: &ContactGraph, contacts: &[Contact]) -> Vec<u32> {
-    let levels: Vec<u32> = contacts.iter().map(|c| graph.contact_level(c)).collect();
+fn sorted_by_level(chosen: &[u32], graph: &ContactGraph, contacts: &[Contact]) -> Vec<u32> {
+    let levels: Vec<u32> = chosen.iter().map(|&k| graph.contact_level(&contacts[k as usize])).collect();
     let top = levels.iter().copied().max().unwrap_or(0) as usize;
     let mut starts = vec![0u32; top + 2];
     for &l in &levels {
@@ -165,9 +166,9 @@ fn sorted_by_level(graph: &ContactGraph, contacts: &[Contact]) -> Vec<u32> {
     for l in 0..=top {
         starts[l + 1] += starts[l];
     }
-    let mut order = vec![0; contacts.len()];
-    for (k, &l) in levels.iter().enumerate() {
-        order[starts[l as usize] as usize] = k as u32;
+    let mut order = vec![0; chosen.len()];
+    for (&k, &l) in chosen.iter().zip(&levels) {
+        order[starts[l as usize] as usize] = k;
         starts[l as usize] += 1;
     }
     order

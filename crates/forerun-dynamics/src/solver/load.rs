@@ -82,6 +82,13 @@ impl Compass {
     }
 }
 
+/// How well the guess holds a body, in mass-scaled squares: of the weight's impulse, and of the part that no support takes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Strain {
+    pub(crate) weight: f32,
+    pub(crate) lost: f32,
+}
+
 pub(crate) struct LoadPass<'a> {
     pub(crate) members: &'a [Member<'a>],
     pub(crate) contacts: &'a [Contact],
@@ -91,11 +98,12 @@ pub(crate) struct LoadPass<'a> {
 }
 
 impl LoadPass<'_> {
-    /// The load of every contact.
-    pub(crate) fn run(&self) -> Vec<Load> {
+    /// The load of every contact, and the strain of every body.
+    pub(crate) fn run(&self) -> (Vec<Load>, Vec<Strain>) {
         let mut loads = vec![Load::default(); self.contacts.len()];
+        let mut strains = vec![Strain::default(); self.members.len()];
         let Some(compass) = Compass::new(self.environment.gravity) else {
-            return loads;
+            return (loads, strains);
         };
         let mut total = vec![Carried::default(); self.members.len()];
         let mut still = vec![Carried::default(); self.members.len()];
@@ -107,11 +115,16 @@ impl LoadPass<'_> {
                 continue;
             }
             self.supports_of(i, &compass, &mut supports);
+            let own = 1.0 / self.members[i].body.inverse_mass;
+            let weight = own * self.fall(i, &compass) * self.fall(i, &compass);
+            strains[i].weight = weight;
             if supports.is_empty() {
+                strains[i].lost = weight;
                 continue;
             }
             let radius = self.members[i].body.radius;
             fit(&mut supports, &total[i], &still[i], (1e-6 * radius * radius).max(1e-12));
+            strains[i].lost = self.lost(i, &supports, &still[i]);
             for s in supports.iter().filter(|s| !s.dropped) {
                 let (c, p, j) = (s.contact as usize, s.point as usize, s.below as usize);
                 loads[c].total[p] = s.total * s.rise;
@@ -122,7 +135,31 @@ impl LoadPass<'_> {
                 still[j].add(s.still, x, z);
             }
         }
-        loads
+        (loads, strains)
+    }
+
+    /// What gravity adds to the speed of a body in a substep. m/s
+    fn fall(&self, i: usize, compass: &Compass) -> f32 {
+        let gravity = -self.environment.gravity.dot(compass.up) * self.members[i].body.gravity_scale;
+        (gravity * self.substep_seconds).max(0.0)
+    }
+
+    /// The part of a body's load that its supports do not take: moments that do not match, and sideways forces beyond friction.
+    fn lost(&self, i: usize, supports: &[Support], still: &Carried) -> f32 {
+        let body = self.members[i].body;
+        let (mut moment_1, mut moment_2, mut slips) = (still.moment_1, still.moment_2, 0.0);
+        for s in supports.iter().filter(|s| !s.dropped) {
+            moment_1 -= s.still * s.x;
+            moment_2 -= s.still * s.z;
+            let below = self.members[s.below as usize].body.material.friction;
+            let friction = (body.material.friction * below).sqrt();
+            let steep = (1.0 - s.rise * s.rise).max(0.0).sqrt();
+            let slip = s.still * (steep - friction * s.rise).max(0.0);
+            slips += slip * slip;
+        }
+        // Turning costs as for a ball of the same radius: I = 0.4 m r².
+        let turns = (moment_1 * moment_1 + moment_2 * moment_2) / (0.4 * body.radius * body.radius);
+        (turns + slips) * body.inverse_mass
     }
 
     /// Own weight of each body, and the momentum that its supports must take from it.
@@ -138,7 +175,7 @@ impl LoadPass<'_> {
                 allowed[i] = sinking;
                 continue;
             }
-            let fall = (-self.environment.gravity.dot(compass.up) * body.gravity_scale * h).max(0.0);
+            let fall = self.fall(i, compass);
             let mass = 1.0 / body.inverse_mass;
             still[i].sum = mass * fall;
             total[i].sum = mass * fall;

@@ -20,6 +20,12 @@ pub(crate) struct Ending {
     pub(crate) overlap: f32,
 }
 
+/// The islands of a batch, and which of them a moving kinematic body touches (by root).
+pub(crate) struct IslandsAt<'a> {
+    pub(crate) islands: &'a Islands,
+    pub(crate) driven: &'a [bool],
+}
+
 /// The state that a body has moved to, whether it was at rest or not.
 pub(crate) fn moved(
     member: &Member,
@@ -63,7 +69,7 @@ pub(crate) fn settle(
     members: &[Member],
     next: &mut [BodyState],
     endings: &[Ending],
-    islands: &Islands,
+    at: &IslandsAt,
     environment: &Environment,
 ) {
     let settings = &environment.settings;
@@ -72,7 +78,8 @@ pub(crate) fn settle(
         return;
     }
     let full = settings.rest_frames();
-    let mut fixpoint = vec![true; members.len()];
+    let islands = at.islands;
+    let mut fixpoint: Vec<bool> = at.driven.iter().map(|driven| !driven).collect();
     for (i, member) in members.iter().enumerate() {
         if !member.body.is_dynamic() {
             continue;

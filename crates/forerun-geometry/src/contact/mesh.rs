@@ -26,8 +26,8 @@ const MOTION_AHEAD: f32 = 1.2;
 struct Candidate {
     /// The point in the frame of the field. Metres.
     point: Vec3,
-    /// Radius of the ball about the point that belongs to the shape: 0 for points of the surface itself. Metres.
-    radius: f32,
+    /// Whether the normal is that of trilinear interpolation at the point and may be smoothed.
+    rough: bool,
     /// Midpoint between the two surfaces, in the world. Metres.
     position: Vec3,
     /// Unit normal in the world, from the first shape to the second.

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Field;
 use super::nearest::{Nearest, Skin};
-use crate::{Aabb, Vec3};
+use crate::Vec3;
 
 /// Cells in half the thinnest thickness: 4 make the normals good to a degree (2 would still do).
 const CELLS_PER_HALF_THICKNESS: f32 = 4.0;
@@ -22,10 +22,13 @@ const EXACT_CELLS: f32 = 4.0;
 /// The field of a closed surface: exact distances to the triangles at the nodes near it, signs by pseudo-normals.
 pub(crate) fn bake(skin: Skin<'_>) -> Field {
     let bounds = skin.mesh.bounds();
-    let cell = cell_size(&bounds, skin.mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
-    let size = grid_size(&bounds, cell).map(|n| n as usize);
-    let cells = Vec3::from_array(size.map(|n| (n - 1) as f32));
-    let origin = (bounds.min + bounds.max - cells * cell) * 0.5;
+    let extent = bounds.max - bounds.min;
+    let wished = cell_size(extent, skin.mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
+    // Nodes on all six sides of the box around the mesh: the edges of boxes and plates are met exactly.
+    let cells = cells_along(extent, wished);
+    let cell = extent / Vec3::from_array(cells.map(|n| n as f32));
+    let origin = bounds.min - cell * PADDING as f32;
+    let size = cells.map(|n| n as usize + 2 * PADDING + 1);
     let distances = vec![f32::NAN; size.iter().product()];
     let mut baker = Baker { skin, origin, cell, size, distances, guess: None };
     let blocks = baker.blocks();
@@ -48,7 +51,7 @@ pub(crate) fn bake(skin: Skin<'_>) -> Field {
 struct Baker<'a> {
     skin: Skin<'a>,
     origin: Vec3,
-    cell: f32,
+    cell: Vec3,
     size: [usize; 3],
     /// Distances so far; not a number where not known yet.
     distances: Vec<f32>,
@@ -102,8 +105,8 @@ impl Baker<'_> {
 
     /// Whether no node of a block, its corners known, can be so near that it must be exact.
     fn is_far(&self, block: &Block) -> bool {
-        let half_diagonal = 0.5 * BLOCK as f32 * 3.0_f32.sqrt();
-        let enough = (EXACT_CELLS + half_diagonal) * self.cell;
+        let half_diagonal = 0.5 * BLOCK as f32 * self.cell.length();
+        let enough = EXACT_CELLS * self.cell.max_element() + half_diagonal;
         block.corners().all(|node| self.distances[self.index(node)].abs() > enough)
     }
 
@@ -112,7 +115,7 @@ impl Baker<'_> {
         if !self.distances[index].is_nan() {
             return;
         }
-        let at = DVec3::from_array(node.map(|i| i as f64)) * f64::from(self.cell) + self.origin.as_dvec3();
+        let at = DVec3::from_array(node.map(|i| i as f64)) * self.cell.as_dvec3() + self.origin.as_dvec3();
         let nearest = self.skin.nearest(at, self.guess.as_ref());
         self.distances[index] = self.skin.signed(at, &nearest).distance as f32;
         self.guess = Some(nearest);
@@ -137,18 +140,18 @@ impl Baker<'_> {
 }
 
 /// The wished cell size, or the smallest larger one (in steps of a twentieth) whose grid is not too large.
-fn cell_size(bounds: &Aabb, wished: f32) -> f32 {
-    let extent = (bounds.max - bounds.min).max_element();
+fn cell_size(extent: Vec3, wished: f32) -> f32 {
     // No grid of so many nodes could be finer along its longest side.
-    let mut cell = wished.max(extent / NODES_MAX as f32);
-    while grid_size(bounds, cell).into_iter().product::<u64>() > NODES_MAX as u64 {
+    let mut cell = wished.max(extent.max_element() / NODES_MAX as f32);
+    let nodes = |cell| cells_along(extent, cell).map(|n| n + 2 * PADDING as u64 + 1).iter().product::<u64>();
+    while nodes(cell) > NODES_MAX as u64 {
         cell *= 1.05;
     }
     cell
 }
 
-/// Nodes along each axis of a grid around the bounds.
-fn grid_size(bounds: &Aabb, cell: f32) -> [u64; 3] {
-    let extent = bounds.max - bounds.min;
-    extent.to_array().map(|e| (e / cell).ceil() as u64 + 2 * PADDING as u64 + 1)
+/// How many cells no larger than `cell` there are along each side of the box around the mesh.
+fn cells_along(extent: Vec3, cell: f32) -> [u64; 3] {
+    // A little less: a side of four cells is not to become five by rounding.
+    extent.to_array().map(|e| ((e / cell - 0.01).ceil() as u64).max(1))
 }

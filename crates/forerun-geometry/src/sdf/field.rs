@@ -12,8 +12,8 @@ use crate::{Aabb, Vec3};
 pub struct Field {
     /// Position of the first node. Metres.
     origin: Vec3,
-    /// Distance between neighbouring nodes. Metres.
-    cell: f32,
+    /// Distance between neighbouring nodes along x, y and z, about the same. Metres.
+    cell: Vec3,
     /// Number of nodes along x, y and z, 3 or more each; fewer than 2^23 in all.
     size: [usize; 3],
     /// Number of cells along x, y and z, ready to compute with.
@@ -23,6 +23,9 @@ pub struct Field {
     /// Distances at the nodes, x fastest, then y, then z.
     nodes: Vec<i16>,
 }
+
+/// The bits of a mask that is set in all lanes.
+const ALL: u32 = (1 << WIDTH) - 1;
 
 /// Where eight points are in the grid.
 struct Place {
@@ -39,19 +42,19 @@ impl Field {
     ///
     /// The distances are stored in steps of the largest one over 32767. Before that a twelfth of the sum of second
     /// differences is taken off: between nodes trilinear interpolation lies above a convex function by that much on
-    /// average, which would make round shapes too small.
-    pub(crate) fn from_distances(origin: Vec3, cell: f32, size: [usize; 3], distances: &[f32]) -> Field {
-        let corrected = without_interpolation_bias(size, distances);
+    /// average, which would make round shapes too small. Not so at sharp edges, where it would make them too large.
+    pub(crate) fn from_distances(origin: Vec3, cell: Vec3, size: [usize; 3], distances: &[f32]) -> Field {
+        let corrected = without_interpolation_bias(size, distances, cell.min_element());
         let largest = corrected.iter().fold(0.0_f32, |m, d| m.max(d.abs()));
         let scale = if largest > 0.0 { largest / f32::from(i16::MAX) } else { 1.0 };
         let nodes = corrected.iter().map(|d| (d / scale).round() as i16).collect();
         Field { origin, cell, size, cells: Vec3::from_array(size.map(|n| (n - 1) as f32)), scale, nodes }
     }
 
-    /// Distance between neighbouring nodes. Metres.
+    /// Largest distance between neighbouring nodes. Metres.
     #[must_use]
     pub fn cell(&self) -> f32 {
-        self.cell
+        self.cell.max_element()
     }
 
     /// The box that the grid covers.
@@ -75,8 +78,8 @@ impl Field {
 
     /// Signed distance (metres) and its gradient (about 1 long) at a point of the field's frame.
     ///
-    /// Beyond the grid's box this is the distance to the surface point that the nearest point of the box points at,
-    /// never less than the true distance by more than the error of the grid.
+    /// Beyond the grid's box this is the distance to a point of the surface, that nearest to the nearest point of the
+    /// box: the true distance or more.
     #[must_use]
     pub fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
         let (distance, gradient) = self.look_up(Lanes3::splat(point));
@@ -86,11 +89,11 @@ impl Field {
     /// Gradient by central differences over a cell: smooth where the trilinear one jumps from cell to cell.
     #[must_use]
     pub fn smooth_gradient(&self, point: Vec3) -> Vec3 {
-        let step = 0.5 * self.cell;
+        let step = self.cell * 0.5;
         let mut taps = Lanes3::splat(point);
         for (axis, lanes) in [&mut taps.x, &mut taps.y, &mut taps.z].into_iter().enumerate() {
-            lanes.0[2 * axis] += step;
-            lanes.0[2 * axis + 1] -= step;
+            lanes.0[2 * axis] += step[axis];
+            lanes.0[2 * axis + 1] -= step[axis];
         }
         let (d, _) = self.look_up(taps);
         Vec3::new(d.0[0] - d.0[1], d.0[2] - d.0[3], d.0[4] - d.0[5]) / self.cell
@@ -108,20 +111,21 @@ impl Field {
         let distance = (z0 + fz * (z1 - z0)) * self.scale;
         let (x0, x1) = (ab + fy * (cd - ab), ef + fy * (gh - ef));
         let (s0, s1) = (y1 - y0, y3 - y2);
-        let slope = self.scale / self.cell;
+        let slope = Vec3::splat(self.scale) / self.cell;
         let gradient = Lanes3 {
-            x: (x0 + fz * (x1 - x0)) * slope,
-            y: (s0 + fz * (s1 - s0)) * slope,
-            z: (z1 - z0) * slope,
+            x: (x0 + fz * (x1 - x0)) * slope.x,
+            y: (s0 + fz * (s1 - s0)) * slope.y,
+            z: (z1 - z0) * slope.z,
         };
-        let outside = Lanes::ZERO.below(place.offset.dot(place.offset));
-        if outside.bits() == 0 {
+        // Not "outside where above 0": points that are not numbers are not inside.
+        let inside = place.offset.dot(place.offset).below(Lanes::splat(f32::MIN_POSITIVE));
+        if inside.bits() == ALL {
             return (distance, gradient);
         }
-        // The surface point that q, the nearest point of the box, sees: p - y = offset + phi(q) grad phi(q).
-        let away = place.offset.plus(gradient.scaled(distance.max(Lanes::ZERO)));
+        // The surface point y that q, the nearest point of the box, sees: p - y = offset + phi(q) grad phi(q).
+        let away = place.offset.plus(gradient.normalized().scaled(distance.max(Lanes::ZERO)));
         let length = away.length();
-        (outside.select(length, distance), outside.select3(away.normalized(), gradient))
+        (inside.select(distance, length), inside.select3(gradient, away.normalized()))
     }
 
     /// Lower bounds of the signed distance at eight points, exact (but for the grid) inside the grid's box.
@@ -137,17 +141,17 @@ impl Field {
         let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
         let distance = (z0 + fz * (z1 - z0)) * self.scale;
         let offset_squared = place.offset.dot(place.offset);
-        let outside = Lanes::ZERO.below(offset_squared);
+        let inside = offset_squared.below(Lanes::splat(f32::MIN_POSITIVE));
         let positive = distance.max(Lanes::ZERO);
-        outside.select((offset_squared + positive * positive).sqrt(), distance)
+        inside.select(distance, (offset_squared + positive * positive).sqrt())
     }
 
     #[inline(always)]
     fn place(&self, points: Lanes3) -> Place {
-        let inverse_cell = 1.0 / self.cell;
-        let (x, fx, ox) = self.place_along(0, points.x, inverse_cell);
-        let (y, fy, oy) = self.place_along(1, points.y, inverse_cell);
-        let (z, fz, oz) = self.place_along(2, points.z, inverse_cell);
+        let inverse_cell = self.cell.recip();
+        let (x, fx, ox) = self.place_along(0, points.x, inverse_cell.x);
+        let (y, fy, oy) = self.place_along(1, points.y, inverse_cell.y);
+        let (z, fz, oz) = self.place_along(2, points.z, inverse_cell.z);
         // Whole numbers below 2^23 are exact, and adding 2^23 puts them into the lowest bits.
         let base = (z * (self.cells.y + 1.0) + y) * (self.cells.x + 1.0) + x + Lanes::splat(8_388_608.0);
         let mut bits = [0; WIDTH];
@@ -167,7 +171,7 @@ impl Field {
         let inside = u.max(Lanes::ZERO).min(Lanes::splat(cells));
         // A node may end up at fraction 1 of the cell below as well as at fraction 0 of its own: the value is the same.
         let index = inside.map(|u| (u - 0.5 + ROUND) - ROUND).min(Lanes::splat(cells - 1.0));
-        (index, inside - index, (u - inside) * self.cell)
+        (index, inside - index, (u - inside) * self.cell[axis])
     }
 
     /// Values at the corners of eight cells: x changes fastest, then y, then z.
@@ -192,8 +196,13 @@ impl Field {
     }
 }
 
-/// The distances less (sum of the 6 neighbours - 6 times the node) / 12; nodes on the faces of the grid stay.
-fn without_interpolation_bias(size: [usize; 3], distances: &[f32]) -> Vec<f32> {
+/// Second differences that would take off more than this part of a cell come from sharp edges: the smallest radius
+/// that the cells are made for takes off a twenty-fourth.
+const ROUND_PART: f32 = 1.0 / 16.0;
+
+/// The distances less (sum of the 6 neighbours - 6 times the node) / 12; nodes on the faces of the grid and at sharp
+/// edges stay.
+fn without_interpolation_bias(size: [usize; 3], distances: &[f32], cell: f32) -> Vec<f32> {
     let [nx, ny, nz] = size;
     let (row, layer) = (nx, nx * ny);
     let mut corrected = distances.to_vec();
@@ -203,9 +212,87 @@ fn without_interpolation_bias(size: [usize; 3], distances: &[f32]) -> Vec<f32> {
                 let d = |k: usize| distances[k];
                 let neighbours =
                     (d(i - 1) + d(i + 1)) + (d(i - row) + d(i + row)) + (d(i - layer) + d(i + layer));
-                corrected[i] = d(i) - (neighbours - 6.0 * d(i)) * (1.0 / 12.0);
+                let bias = (neighbours - 6.0 * d(i)) * (1.0 / 12.0);
+                if bias.abs() < ROUND_PART * cell {
+                    corrected[i] = d(i) - bias;
+                }
             }
         }
     }
     corrected
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RADIUS: f32 = 0.4;
+
+    /// A ball on a grid of 0.1 m, distances exact at the nodes.
+    fn ball() -> Field {
+        let (origin, cell, size) = (Vec3::new(-0.65, -0.6, -0.7), Vec3::splat(0.1), [14, 13, 15]);
+        let mut distances = Vec::new();
+        for z in 0..size[2] {
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let node = origin + Vec3::new(x as f32, y as f32, z as f32) * cell;
+                    distances.push(node.length() - RADIUS);
+                }
+            }
+        }
+        Field::from_distances(origin, cell, size, &distances)
+    }
+
+    fn points() -> impl Iterator<Item = Vec3> {
+        (0..5000_u32).map(|i| {
+            let part = |k: u32| ((i * 7919 + i * i % 613 * k * 104_729) % 2003) as f32 / 2003.0 * 2.0 - 1.0;
+            Vec3::new(part(1), part(2), part(3))
+        })
+    }
+
+    #[test]
+    fn a_round_surface_is_as_large_as_it_should_be_on_average() {
+        let field = ball();
+        let near: Vec<f32> = points()
+            .map(|p| p * 0.5)
+            .filter(|p| (p.length() - RADIUS).abs() < 0.03)
+            .map(|p| field.distance_and_gradient(p).0 - (p.length() - RADIUS))
+            .collect();
+        let mean = near.iter().sum::<f32>() / near.len() as f32;
+        // Without the correction it would be cell² / 12 times 2 / radius = 4.2 mm.
+        assert!(near.len() > 200 && mean.abs() < 1e-3, "{mean} m too far on average");
+    }
+
+    #[test]
+    fn lower_bounds_are_below_and_answers_beyond_the_grid_are_surface_points() {
+        let field = ball();
+        // In the middle of the ball the grid is too coarse to say much.
+        for p in points().map(|p| p * 3.0).filter(|p| p.length() > 0.3) {
+            let truth = p.length() - RADIUS;
+            let bound = field.lower_bound(Lanes3::splat(p)).0[0];
+            assert!(bound < truth + 0.006, "{bound} at {p}, truth {truth}");
+            let (distance, gradient) = field.distance_and_gradient(p);
+            assert!(distance > truth - 0.005 - 0.01 * p.length(), "{distance} at {p}, truth {truth}");
+            if !field.contains(p) {
+                let foot = p - gradient * distance;
+                assert!((foot.length() - RADIUS).abs() < 0.02, "from {p} to {foot}");
+            }
+        }
+    }
+
+    #[test]
+    fn nodes_and_corners_of_the_grid_are_read_without_a_panic() {
+        let field = ball();
+        let bounds = field.bounds();
+        for x in 0..14 {
+            let p = Vec3::new(bounds.min.x + 0.1 * x as f32, bounds.max.y, bounds.max.z);
+            let (d, _) = field.distance_and_gradient(p);
+            assert!((d - (p.length() - RADIUS)).abs() < 0.01, "{d} at {p}");
+        }
+        for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN_POSITIVE] {
+            let (d, _) = field.distance_and_gradient(Vec3::new(odd, 0.0, 0.0));
+            assert!(!odd.is_nan() || d.is_nan());
+            let _ = field.smooth_gradient(Vec3::splat(odd));
+        }
+    }
 }

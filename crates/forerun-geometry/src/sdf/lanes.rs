@@ -172,6 +172,11 @@ impl Lanes3 {
     }
 
     #[inline(always)]
+    pub(crate) fn minus(self, other: Lanes3) -> Lanes3 {
+        Lanes3 { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+
+    #[inline(always)]
     pub(crate) fn plus(self, other: Lanes3) -> Lanes3 {
         Lanes3 { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
     }

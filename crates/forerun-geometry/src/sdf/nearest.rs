@@ -138,3 +138,76 @@ fn nearest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, Feature) {
     let inverse = 1.0 / (va + vb + vc);
     (a + ab * (vb * inverse) + ac * (vc * inverse), Feature::Face)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube of half extent 1 with a pyramid cut into its top: convex and concave edges and corners.
+    fn notched_cube() -> Mesh {
+        let mut vertices: Vec<Vec3> = (0_u8..8)
+            .map(|k| {
+                Vec3::new(f32::from(k & 1), f32::from(k >> 1 & 1), f32::from(k >> 2 & 1)) * 2.0 - Vec3::ONE
+            })
+            .collect();
+        vertices.push(Vec3::new(0.1, 0.2, -0.1));
+        let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let mut triangles: Vec<[u32; 3]> =
+            quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        triangles.extend([[2, 6, 8], [6, 7, 8], [7, 3, 8], [3, 2, 8]]);
+        Mesh::new(vertices, triangles).expect("closed")
+    }
+
+    /// Inside by counting crossings of a slanted ray.
+    fn is_inside(mesh: &Mesh, p: DVec3) -> bool {
+        let way = DVec3::new(0.137, 0.951, 0.277);
+        let crossings = (0..mesh.triangles.len()).filter(|t| {
+            let [a, b, c] = corners(mesh, *t).map(|v| v - p);
+            let volumes = [a.cross(b).dot(way), b.cross(c).dot(way), c.cross(a).dot(way)];
+            let through = volumes.iter().all(|v| *v > 0.0) || volumes.iter().all(|v| *v < 0.0);
+            let n = (b - a).cross(c - a);
+            through && a.dot(n) / way.dot(n) > 0.0
+        });
+        crossings.count() % 2 == 1
+    }
+
+    #[test]
+    fn nearest_points_and_sides_agree_with_brute_force() {
+        let mesh = notched_cube();
+        let skin = Skin::of(&mesh);
+        let mut guess = None;
+        let (mut inside, mut features) = (0, [0; 3]);
+        for i in 0..4000_u32 {
+            let part = |k: u32| f64::from((i * 7919 + i * i % 613 * k * 104_729) % 4001) / 4001.0 * 4.0 - 2.0;
+            let p = DVec3::new(part(1), part(2), part(3));
+            let nearest = skin.nearest(p, guess.as_ref());
+            let all = (0..mesh.triangles.len()).map(|t| skin.nearest_on(t, p).distance_squared);
+            let brute = all.fold(f64::INFINITY, f64::min);
+            assert!((nearest.distance_squared - brute).abs() < 1e-12, "{p}");
+            let signed = skin.signed(p, &nearest);
+            if signed.distance.abs() > 1e-6 {
+                assert_eq!(signed.distance < 0.0, is_inside(&mesh, p), "side of {p}, nearest {nearest:?}");
+            }
+            inside += u32::from(signed.distance < 0.0);
+            features[match nearest.feature {
+                Feature::Face => 0,
+                Feature::Edge(_) => 1,
+                Feature::Corner(_) => 2,
+            }] += 1;
+            guess = Some(nearest);
+        }
+        assert!(inside > 200 && features.iter().all(|n| *n > 100), "{inside} inside, {features:?}");
+    }
+
+    #[test]
+    fn edges_are_known_by_their_form() {
+        let mesh = notched_cube();
+        let kinds = &mesh.collider().normals.edge_kinds;
+        let count = |kind| kinds.iter().filter(|k| **k == kind).count();
+        // Twelve edges of the cube, four down into the notch, and the diagonals of five faces.
+        assert_eq!(
+            [EdgeKind::Ridge, EdgeKind::Valley, EdgeKind::Flat, EdgeKind::Boundary].map(count),
+            [12, 4, 5, 0]
+        );
+    }
+}

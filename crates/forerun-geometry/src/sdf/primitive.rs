@@ -174,3 +174,67 @@ fn sheet(p: Lanes3, skin: &Skin<'_>, depth_limit: f32) -> (Lanes, Lanes3) {
     }
     (distance, gradient)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Hull;
+
+    fn numbers(i: u32) -> Vec3 {
+        let part = |k: u32| ((i * 7919 + i * i % 613 * k * 104_729) % 2003) as f32 / 2003.0 * 2.0 - 1.0;
+        Vec3::new(part(1), part(2), part(3))
+    }
+
+    /// For every shape: its surface, and whether distances beyond corners are exact.
+    fn surfaces() -> Vec<(Surface<'static>, bool)> {
+        let corners: Vec<Vec3> = (0..12).map(|i| numbers(i * 37 + 5).normalize() * 0.6).collect();
+        let hull = Hull::new(&corners).expect("points in general position");
+        vec![
+            (Surface::HalfSpace, true),
+            (Surface::Sphere(0.5), true),
+            (Surface::Cuboid(Cuboid { half_extents: Vec3::new(0.3, 0.5, 0.2) }), true),
+            (Surface::Capsule(Capsule { half_height: 0.3, radius: 0.2 }), true),
+            (Surface::Cylinder(Cylinder { half_height: 0.3, radius: 0.4 }), true),
+            (Surface::Hull(hull_planes(&hull)), false),
+        ]
+    }
+
+    fn at(surface: &Surface, p: Vec3) -> (f32, Vec3) {
+        surface.exact(p, None, &mut None)
+    }
+
+    #[test]
+    fn the_gradient_leads_to_the_surface() {
+        for (surface, exact) in surfaces() {
+            for i in 0..2000 {
+                let p = numbers(i) * 1.2;
+                let (distance, gradient) = at(&surface, p);
+                assert!((gradient.length() - 1.0).abs() < 1e-4, "{surface:?} at {p}: gradient {gradient}");
+                let foot = p - gradient * distance;
+                let (left, _) = at(&surface, foot);
+                if exact {
+                    assert!(left.abs() < 1e-5, "{surface:?} at {p}: {left} m left at {foot}");
+                }
+                // A distance: no faster than the way between two points.
+                let q = numbers(i + 77) * 1.2;
+                assert!((at(&surface, q).0 - distance).abs() <= p.distance(q) + 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn no_inner_point_is_nearer_than_the_distance() {
+        for (surface, _) in surfaces() {
+            let inner: Vec<Vec3> = (0..4000).map(numbers).filter(|p| at(&surface, *p).0 <= 0.0).collect();
+            assert!(inner.len() > 50);
+            for p in (0..300).map(|i| numbers(i * 3 + 1) * 1.5) {
+                let (distance, _) = at(&surface, p);
+                let nearest = inner.iter().map(|q| q.distance(p)).fold(f32::INFINITY, f32::min);
+                assert!(
+                    distance <= nearest + 1e-5,
+                    "{surface:?}: {distance} at {p}, but {nearest} to an inner point"
+                );
+            }
+        }
+    }
+}

@@ -136,3 +136,49 @@ fn sort_by_place(samples: &mut [Sample]) {
     sort_by_place(low);
     sort_by_place(high);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scattered(count: u32) -> Vec<Sample> {
+        let part = |i: u32, k: u32| ((i * 7919 + k * 104_729) % 1009) as f32 / 1009.0;
+        let point = |i| Vec3::new(part(i, 1), part(i * i % 997, 2), part(i * 31 % 499, 3));
+        (0..count).map(|i| Sample { point: point(i), normal: Vec3::Y }).collect()
+    }
+
+    #[test]
+    fn every_sample_is_visited_once_and_lies_in_its_spheres() {
+        for count in [1, 7, 8, 9, 64, 65, 500, 1000] {
+            let given = scattered(count);
+            let samples = Samples::new(given.clone());
+            let mut visited: Vec<[u32; 3]> = Vec::new();
+            let all = |spheres: &Spheres| Lanes::splat(f32::NEG_INFINITY).below(spheres.radius).bits();
+            samples.visit(all, |points, _, meant| {
+                visited.extend(
+                    (0..WIDTH)
+                        .filter(|i| meant >> i & 1 == 1)
+                        .map(|i| points.lane(i).to_array().map(f32::to_bits)),
+                );
+            });
+            let mut expected: Vec<[u32; 3]> =
+                given.iter().map(|s| s.point.to_array().map(f32::to_bits)).collect();
+            visited.sort_unstable();
+            expected.sort_unstable();
+            assert_eq!(visited, expected);
+            for (i, sample) in samples.iter().enumerate() {
+                for (spheres, k) in [(&samples.leaves, i / WIDTH), (&samples.nodes, i / (WIDTH * WIDTH))] {
+                    let (sphere, lane) = (spheres[k / WIDTH], k % WIDTH);
+                    assert!(sample.point.distance(sphere.centre.lane(lane)) <= sphere.radius.0[lane]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn neighbours_share_leaves() {
+        let samples = Samples::new(scattered(1000));
+        let mean = samples.leaves.iter().flat_map(|l| l.radius.0).filter(|r| *r > 0.0).sum::<f32>() / 125.0;
+        assert!(mean < 0.2, "leaves of 8 in 1000 points of a unit cube have a mean radius of {mean} m");
+    }
+}

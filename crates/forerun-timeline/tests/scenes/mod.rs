@@ -1,8 +1,10 @@
 //! Small scenes for the oracle: piles, walls, lines of dominoes, things that fall.
 
+use std::sync::Arc;
+
 use forerun_dynamics::{BodyDef, BodyKind};
-use forerun_geometry::Vec3;
-use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Shape, Sphere};
+use forerun_geometry::shape::{Capsule, Compound, Cuboid, Cylinder, Hull, Mesh, Shape, Sphere};
+use forerun_geometry::{Pose, Vec3};
 
 /// All scenes and their names.
 pub(crate) fn all() -> Vec<(&'static str, Vec<BodyDef>)> {
@@ -12,6 +14,8 @@ pub(crate) fn all() -> Vec<(&'static str, Vec<BodyDef>)> {
         ("dominoes", dominoes()),
         ("rain", rain()),
         ("pusher", pusher()),
+        ("lumps", lumps()),
+        ("field", field()),
     ]
 }
 
@@ -104,4 +108,44 @@ pub(crate) fn pusher() -> Vec<BodyDef> {
         bodies.push(BodyDef::new(cuboid(0.3, 0.3, 0.3)).at(at));
     }
     bodies
+}
+
+/// Triangle meshes (octahedra), hulls and compounds that fall on each other.
+pub(crate) fn lumps() -> Vec<BodyDef> {
+    let r = 0.45;
+    let corners = [Vec3::X * r, -Vec3::X * r, Vec3::Y * r, -Vec3::Y * r, Vec3::Z * r, -Vec3::Z * r].to_vec();
+    let triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    let mesh = Arc::new(Mesh::new(corners.clone(), triangles.to_vec()).expect("an octahedron is closed"));
+    let hull = Arc::new(Hull::new(&corners).expect("an octahedron is convex"));
+    let bars = vec![
+        (Pose::from_position(Vec3::new(0.0, 0.3, 0.0)), cuboid(0.5, 0.1, 0.1)),
+        (Pose::from_position(Vec3::new(0.0, -0.1, 0.0)), cuboid(0.1, 0.3, 0.1)),
+    ];
+    let compound = Arc::new(Compound::new(bars).expect("two boxes"));
+    let mut bodies = vec![BodyDef::fixed(Shape::HalfSpace)];
+    for i in 0..9 {
+        let shape = match i % 3 {
+            0 => Shape::Mesh(Arc::clone(&mesh)),
+            1 => Shape::Hull(Arc::clone(&hull)),
+            _ => Shape::Compound(Arc::clone(&compound)),
+        };
+        let at = Vec3::new(0.3 * (i % 2) as f32, 0.7 + 0.95 * i as f32 / 1.5, 0.2 * (i % 4) as f32);
+        bodies.push(BodyDef::new(shape).at(at));
+    }
+    bodies
+}
+
+/// Sixty-four boxes spread over a field without gravity, every third of them under way through the others.
+pub(crate) fn field() -> Vec<BodyDef> {
+    (0..64)
+        .map(|i| {
+            let (column, row) = ((i % 8) as f32, (i / 8) as f32);
+            let mut body = BodyDef::new(cuboid(0.4, 0.4, 0.4)).at(Vec3::new(2.0 * column, 0.0, 2.0 * row));
+            body.gravity_scale = 0.0;
+            if i % 3 == 0 {
+                body.velocity = Vec3::new(4.0 - column, 0.0, row - 3.5);
+            }
+            body
+        })
+        .collect()
 }

@@ -12,6 +12,9 @@ use crate::{Pose, Shape, Vec3};
 
 use super::points::{self, Region, RoundPoint};
 
+/// See [`Direction::inset`]; as part of half the thickness of the shape.
+const INSET_PART: f32 = 0.25;
+
 /// Points of one shape to be looked up in the field of another.
 pub(super) struct Direction<'a> {
     /// The points, in their own frame.
@@ -34,6 +37,8 @@ pub(super) struct Direction<'a> {
     pub(super) spin: Vec3,
     /// 1 if the field is the first shape's: its gradient then points to the second; -1 otherwise.
     pub(super) sign: f32,
+    /// How far inside their own surface points are looked up that do not face the other one. Metres.
+    pub(super) inset: f32,
     /// Points closer than this count, or that will be closer at the end of the step. Metres.
     pub(super) near: f32,
     /// Points farther than this do not count. Metres.
@@ -92,6 +97,7 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         drift: into_field(drift),
         spin: into_field(spin),
         sign,
+        inset: INSET_PART * sampled.shape.half_thickness(),
         near: NEAR.min(margin),
         margin,
     })

@@ -15,6 +15,31 @@ const GRADIENT_SQUARED_MIN: f32 = 0.01;
 /// an edge, or past the middle of a thin part, from being pushed out on the wrong side.
 const FACING_MAX: f32 = 0.2;
 
+/// The corners of boxes face what they stand on with a cosine of -0.58, edges and smooth surfaces better. Points that
+/// face the surface less well are asked again.
+const FACING_WELL: f32 = -0.45;
+
+/// They are if they are inside the surface, or this close to it. Metres.
+const BESIDE: f32 = 0.005;
+
+/// Points with their outward normals, in the field's frame.
+struct Eight {
+    points: Lanes3,
+    outwards: Lanes3,
+}
+
+/// What the field says to them.
+struct Answers {
+    distance: Lanes,
+    normal: Lanes3,
+    /// The bits of the points that are candidates.
+    found: u32,
+    /// The bits of those near or inside the surface that do not face it well.
+    doubtful: u32,
+    /// Where it was asked; see [`Direction::meet`].
+    inset: f32,
+}
+
 /// Appends the points of the direction that are near the surface, or will be at the end of the step.
 pub(super) fn find(direction: &Direction, index: usize, candidates: &mut Vec<Candidate>) {
     match &direction.points {
@@ -33,28 +58,59 @@ impl Direction<'_> {
         samples.visit(
             |spheres| self.near(spheres.centre.transformed(&self.axes, self.origin), spheres.radius),
             |points, normals, meant| {
-                let points = points.transformed(&self.axes, self.origin);
-                let (distance, gradient) = self.surface.look_up(points);
-                let mut found = meant & distance.below(Lanes::splat(self.margin)).bits();
-                if found == 0 {
-                    return;
+                let eight = Eight {
+                    points: points.transformed(&self.axes, self.origin),
+                    outwards: normals.transformed(&self.axes, Vec3::ZERO),
+                };
+                let mut there = self.meet(&eight, 0.0, meant);
+                if there.doubtful != 0 && self.inset > 0.0 {
+                    let mut inside = self.meet(&eight, self.inset, there.doubtful);
+                    // Better than an answer that is good enough is only one without doubt.
+                    inside.found &= !inside.doubtful | !there.found;
+                    there.found &= !inside.found;
+                    self.push(&eight, &inside, index, candidates);
                 }
-                let length_squared = gradient.dot(gradient);
-                let normal = gradient.normalized();
-                let closing = normal.dot(self.motion_at(points)).min(Lanes::ZERO);
-                found &= (distance + closing).below(Lanes::splat(self.near)).bits();
-                found &= Lanes::splat(GRADIENT_SQUARED_MIN).below(length_squared).bits();
-                let facing = normal.dot(normals.transformed(&self.axes, Vec3::ZERO));
-                found &= facing.below(Lanes::splat(FACING_MAX)).bits();
-                while found != 0 {
-                    let i = found.trailing_zeros() as usize;
-                    found &= found - 1;
-                    debug_assert!(i < WIDTH, "a bit beyond the lanes");
-                    let point = RoundPoint { centre: points.lane(i), radius: 0.0 };
-                    candidates.push(self.candidate(point, normal.lane(i), distance.0[i], index));
-                }
+                self.push(&eight, &there, index, candidates);
             },
         );
+    }
+
+    /// What the field says to some of eight points, asked `inset` metres further inside their own surface.
+    ///
+    /// There the face that the points have come through is the nearest one even for the corners of a box that stands
+    /// exactly on another of the same size. The answer is carried back to the points along the normal found.
+    #[inline(always)]
+    fn meet(&self, eight: &Eight, inset: f32, asked: u32) -> Answers {
+        let back = eight.outwards.scaled(Lanes::splat(inset));
+        let (distance, gradient) = self.surface.look_up(eight.points.minus(back));
+        let normal = gradient.normalized();
+        let distance = distance + normal.dot(back);
+        let near = asked & distance.below(Lanes::splat(self.margin)).bits();
+        if near == 0 {
+            return Answers { distance, normal, found: 0, doubtful: 0, inset };
+        }
+        let closing = normal.dot(self.motion_at(eight.points)).min(Lanes::ZERO);
+        let facing = normal.dot(eight.outwards);
+        let found = near
+            & facing.below(Lanes::splat(FACING_MAX)).bits()
+            & (distance + closing).below(Lanes::splat(self.near)).bits()
+            & Lanes::splat(GRADIENT_SQUARED_MIN).below(gradient.dot(gradient)).bits();
+        let doubtful = near
+            & distance.below(Lanes::splat(BESIDE)).bits()
+            & !facing.below(Lanes::splat(FACING_WELL)).bits();
+        Answers { distance, normal, found, doubtful, inset }
+    }
+
+    #[inline(always)]
+    fn push(&self, eight: &Eight, answers: &Answers, index: usize, candidates: &mut Vec<Candidate>) {
+        let mut found = answers.found;
+        while found != 0 {
+            let i = found.trailing_zeros() as usize;
+            found &= found - 1;
+            let ball = RoundPoint { centre: eight.points.lane(i), radius: 0.0 };
+            let candidate = self.candidate(ball, answers.normal.lane(i), answers.distance.0[i], index);
+            candidates.push(Candidate { rough: answers.inset == 0.0, ..candidate });
+        }
     }
 
     /// At most eight balls.
@@ -109,7 +165,7 @@ impl Direction<'_> {
         let midpoint = point.centre - normal * (0.5 * (point.radius + distance));
         Candidate {
             point: point.centre,
-            radius: point.radius,
+            rough: false,
             position: self.field_axes * midpoint + self.field_pose.position,
             normal: self.field_axes * normal * self.sign,
             separation: distance - point.radius,

@@ -20,6 +20,8 @@ const SIDE_COSINE: f32 = 0.5;
 ///
 /// Without this the farthest points win, however shallow, and piles sink in and never rest.
 const DEPTH_PENALTY: f32 = 8.0;
+/// Cosine of the largest angle by which smoothing may turn a normal: 20 degrees.
+const SMOOTH_COSINE: f32 = 0.94;
 /// Points nearer to each other than this are one. Metres.
 const SAME_POINT: f32 = 0.005;
 /// Points weigh in the mean normal by how far they are above this much more than the smallest separation. Metres.
@@ -102,15 +104,17 @@ struct Left {
 /// Replaces the normal of a candidate found in the field of a mesh by the smooth one.
 fn smooth(c: &mut Candidate, direction: &Direction) {
     let Surface::Field(field) = &direction.surface else { return };
-    // Rounded shapes are looked up in the triangles; beyond the grid there is nothing to take differences of.
-    if c.radius > 0.0 || !field.contains(c.point) {
+    // Beyond the grid there is nothing to take differences of.
+    if !c.rough || !field.contains(c.point) {
         return;
     }
-    let gradient = field.smooth_gradient(c.point);
-    // In the middle of thin parts the two sides cancel.
-    if gradient.length_squared() > 0.1 {
-        let point = RoundPoint { centre: c.point, radius: c.radius };
-        *c = direction.candidate(point, gradient.normalize(), c.separation, c.direction);
+    let Some(smooth) = field.smooth_gradient(c.point).try_normalize() else { return };
+    let point = RoundPoint { centre: c.point, radius: 0.0 };
+    let smoothed = direction.candidate(point, smooth, c.separation, c.direction);
+    // On round surfaces the two are within a few degrees. At edges and in the middle of thin parts the differences mix
+    // sides that have nothing to do with each other.
+    if smoothed.normal.dot(c.normal) > SMOOTH_COSINE {
+        *c = smoothed;
     }
 }
 
