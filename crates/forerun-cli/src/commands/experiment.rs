@@ -108,6 +108,10 @@ fn draw(figure: &Figure, outcomes: &[Outcome], folder: &Path) -> Result<(), Fail
     let times = || figures::times(figure.title, decoupled, Some(coupled));
     let panels = match figure.kind {
         FigureKind::Queue => vec![figures::queue(figure.title, decoupled.rows)],
+        FigureKind::QueueAndLowest => vec![
+            figures::queue(figure.title, decoupled.rows),
+            figures::queue_at_lowest("The moment with the fewest states", decoupled.rows),
+        ],
         FigureKind::Times => vec![times()],
         FigureKind::TimesAndSteps => {
             vec![times(), figures::time_steps("Shortest time step of the displayed frame", &recorded)]
