@@ -23,6 +23,8 @@ pub(crate) struct Figure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FigureKind {
     Queue,
+    /// Above, all of the queue; below, its lowest moment.
+    QueueAndLowest,
     Times,
     TimesAndSteps,
 }
@@ -94,7 +96,7 @@ pub(crate) fn interaction(scene: Scene) -> Plan {
             figure(
                 "figure_5_8",
                 "Figure 5.8: interaction, fewest and most states in the queue",
-                FigureKind::Queue,
+                FigureKind::QueueAndLowest,
             ),
             figure(
                 "figure_5_9",
