@@ -186,7 +186,8 @@ impl Body {
     /// The body and its first state.
     ///
     /// # Errors
-    /// When a number of the definition is not finite or out of its range.
+    /// When a number of the definition is not finite or out of its range, or the shape bounds no volume (an open mesh, a half-space) and the
+    /// body is dynamic.
     pub fn new(def: &BodyDef) -> Result<(Body, BodyState), BodyError> {
         validate(def)?;
         let (mass, centre, inertia, principal) = match def.mass {
@@ -279,9 +280,10 @@ fn validate(def: &BodyDef) -> Result<(), BodyError> {
         }
     }
     let q = def.pose.rotation;
-    if !(q.is_finite() && (q.length_squared() - 1.0).abs() < 1e-3) {
+    if !is_unit(q) {
         return fail("rotation", format!("must be a unit quaternion (x, y, z, w), is {q}"));
     }
+    validate_shape(def)?;
     let m = def.material;
     if !(m.friction >= 0.0 && m.friction.is_finite()) {
         return fail("friction", format!("must be 0 or more, is {}", m.friction));
@@ -305,5 +307,96 @@ fn validate(def: &BodyDef) -> Result<(), BodyError> {
     if !(mass > 0.0 && mass.is_finite()) {
         return fail(field, format!("must be above 0, is {mass}"));
     }
+    if let Mass::Given { centre, principal_rotation: q, .. } = def.mass {
+        if !centre.is_finite() {
+            return fail("centre", format!("must be finite numbers, is {centre}"));
+        }
+        if !is_unit(q) {
+            return fail("principal_rotation", format!("must be a unit quaternion (x, y, z, w), is {q}"));
+        }
+    }
     Ok(())
+}
+
+fn is_unit(q: Quat) -> bool {
+    q.is_finite() && (q.length_squared() - 1.0).abs() < 1e-3
+}
+
+/// Lengths of shapes that were not made by a constructor, and whether a dynamic body has an inside that can be pushed out of others, whatever
+/// mass it is said to have.
+fn validate_shape(def: &BodyDef) -> Result<(), BodyError> {
+    let made = match &def.shape {
+        Shape::Sphere(s) => Shape::sphere(s.radius),
+        Shape::Cuboid(s) => Shape::cuboid(s.half_extents),
+        Shape::Capsule(s) => Shape::capsule(s.half_height, s.radius),
+        Shape::Cylinder(s) => Shape::cylinder(s.half_height, s.radius),
+        Shape::Hull(_) | Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => Ok(Shape::HalfSpace),
+    };
+    made.map_err(|error| BodyError { field: error.field, message: error.message })?;
+    let has_volume = match &def.shape {
+        Shape::HalfSpace => false,
+        Shape::Mesh(mesh) => mesh.closed,
+        _ => true,
+    };
+    if def.kind == BodyKind::Dynamic && !has_volume {
+        let message = "an open mesh or half-space bounds no volume: such a body must be fixed or kinematic";
+        return Err(BodyError { field: "shape", message: message.to_owned() });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use forerun_geometry::shape::{Mesh, Sphere};
+
+    use super::*;
+
+    fn open_mesh() -> Shape {
+        Mesh::open(vec![Vec3::ZERO, Vec3::Z, Vec3::X], vec![[0, 1, 2]]).unwrap().into()
+    }
+
+    #[test]
+    fn what_bounds_no_volume_is_never_dynamic_whatever_its_mass() {
+        let given = Mass::Given {
+            mass: 1.0,
+            centre: Vec3::ZERO,
+            inertia: Vec3::ONE,
+            principal_rotation: Quat::IDENTITY,
+        };
+        for shape in [open_mesh(), Shape::HalfSpace] {
+            for mass in [given, Mass::Density(1000.0), Mass::Total(1.0)] {
+                let dynamic = BodyDef { mass, ..BodyDef::new(shape.clone()) };
+                let error = Body::new(&dynamic).unwrap_err().to_string();
+                assert!(error.starts_with("shape: an open mesh or half-space"), "{error}");
+                let kinematic = BodyDef { kind: BodyKind::Kinematic, ..dynamic };
+                assert!(Body::new(&kinematic).is_ok());
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_named() {
+        let refused = |change: fn(&mut BodyDef), field: &str| {
+            let mut def = BodyDef::new(Shape::Sphere(Sphere { radius: 1.0 }));
+            assert!(Body::new(&def).is_ok());
+            change(&mut def);
+            assert_eq!(Body::new(&def).unwrap_err().field, field);
+        };
+        let given = |centre, principal_rotation| Mass::Given {
+            mass: 1.0,
+            centre,
+            inertia: Vec3::ONE,
+            principal_rotation,
+        };
+        refused(|d| d.shape = Shape::Sphere(Sphere { radius: -1.0 }), "radius");
+        refused(|d| d.velocity.x = f32::INFINITY, "velocity");
+        refused(|d| d.pose.rotation = Quat::from_xyzw(0.0, 0.0, 0.0, 2.0), "rotation");
+        refused(|d| d.material.restitution = 1.5, "restitution");
+        refused(|d| d.mass = Mass::Total(f32::NAN), "mass");
+        let mut def = BodyDef::new(Shape::Sphere(Sphere { radius: 1.0 }));
+        def.mass = given(Vec3::NAN, Quat::IDENTITY);
+        assert_eq!(Body::new(&def).unwrap_err().field, "centre");
+        def.mass = given(Vec3::ZERO, Quat::from_xyzw(0.0, 0.0, 0.0, f32::NAN));
+        assert_eq!(Body::new(&def).unwrap_err().field, "principal_rotation");
+    }
 }

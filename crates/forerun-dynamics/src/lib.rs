@@ -20,7 +20,7 @@ pub mod step;
 pub mod world;
 
 pub use body::{Body, BodyDef, BodyError, BodyId, BodyKind, Mass, Material, Spring};
-pub use settings::{Environment, StepSettings};
+pub use settings::{Environment, EnvironmentError, StepSettings};
 pub use stage::{Observer, Stage, Unobserved};
 pub use state::BodyState;
 pub use step::{Group, Member, StepReport};

@@ -10,7 +10,7 @@ use crate::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, 
 pub struct World {
     bodies: Vec<Body>,
     states: Vec<BodyState>,
-    /// Gravity and settings.
+    /// Gravity and settings. While [`Environment::check`] refuses them, [`World::step`] moves nothing.
     pub environment: Environment,
 }
 
@@ -54,8 +54,11 @@ impl World {
         &mut self.states
     }
 
-    /// Goes on by one frame.
+    /// Goes on by one frame; stands still, with an empty report, in an environment that is not possible.
     pub fn step(&mut self, observer: &mut dyn Observer) -> StepReport {
+        if self.environment.check().is_err() {
+            return StepReport::default();
+        }
         let members: Vec<Member> = (self.bodies.iter().zip(&self.states).enumerate())
             .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state })
             .collect();
@@ -81,5 +84,59 @@ impl World {
         let bytes = self.states.iter().flat_map(BodyState::bits).flat_map(u32::to_le_bytes);
         bytes
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use forerun_geometry::Vec3;
+    use forerun_geometry::shape::{Cuboid, Shape};
+
+    use super::*;
+    use crate::Unobserved;
+
+    /// Two boxes on the ground, in an environment that `change` has touched, after ten frames.
+    fn ten_frames(change: impl Fn(&mut Environment)) -> World {
+        let mut world = World::default();
+        let cube = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) });
+        let ground = Shape::Cuboid(Cuboid { half_extents: Vec3::new(9.0, 0.5, 9.0) });
+        world.add(&BodyDef::fixed(ground).at(Vec3::new(0.0, -0.5, 0.0))).unwrap();
+        world.add(&BodyDef::new(cube.clone()).at(Vec3::new(0.0, 0.5, 0.0))).unwrap();
+        world.add(&BodyDef::new(cube).at(Vec3::new(0.1, 2.5, 0.0))).unwrap();
+        change(&mut world.environment);
+        for _ in 0..10 {
+            world.step(&mut Unobserved);
+        }
+        world
+    }
+
+    #[test]
+    fn an_environment_that_is_not_possible_moves_nothing() {
+        let start = ten_frames(|e| e.settings.frame_seconds = 0.0).state_hash();
+        assert_ne!(ten_frames(|_| ()).state_hash(), start);
+        assert_eq!(ten_frames(|e| e.settings.substeps = 0).state_hash(), start);
+        assert_eq!(ten_frames(|e| e.settings.slices_max = 0).state_hash(), start);
+        assert_eq!(ten_frames(|e| e.gravity.x = f32::NAN).state_hash(), start);
+    }
+
+    #[test]
+    fn the_ends_of_the_ranges_make_no_nan() {
+        let changes: [fn(&mut Environment); 10] = [
+            |e| e.gravity = Vec3::ZERO,
+            |e| e.gravity = Vec3::splat(f32::MAX),
+            |e| e.gravity = Vec3::splat(f32::MIN_POSITIVE),
+            |e| e.settings.frame_seconds = 0.000_01,
+            |e| e.settings.frame_seconds = 1.0,
+            |e| (e.settings.substeps, e.settings.first_sweeps, e.settings.first_sweeps_hard) = (1, 1, 1),
+            |e| (e.settings.overlap_recovery, e.settings.shock_yield) = (0.0, 0.0),
+            |e| (e.settings.contact_margin_m, e.settings.overlap_allowed_m) = (0.0, 0.0),
+            |e| e.settings.rest_seconds = f32::MAX,
+            |e| e.settings.recovery_speed_max = f32::MAX,
+        ];
+        for change in changes {
+            let world = ten_frames(change);
+            assert_eq!(world.environment.check(), Ok(()));
+            assert!(world.states().iter().all(BodyState::is_finite), "{:?}", world.environment);
+        }
     }
 }

@@ -13,7 +13,6 @@ pub mod command;
 pub mod command_entry;
 pub mod error;
 pub mod mesh;
-mod mesh_file;
 mod range;
 mod read;
 pub mod rotation;

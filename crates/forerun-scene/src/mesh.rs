@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use forerun_geometry::Vec3;
+use forerun_geometry::mesh_file::{MeshFileError, MeshFileProblem, TriangleList, load_mesh, load_open_mesh};
 use forerun_geometry::shape::Mesh;
 use forerun_geometry::shape::mesh_make::{ball, torus};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Fault, Within};
-use crate::{mesh_file, range};
+use crate::range;
 
 /// A mesh in a scene file: exactly one of `file`, `torus`, `torus_knot` and `ball`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -140,8 +141,8 @@ impl MeshEntry {
     pub(crate) fn build(&self, folder: &Path) -> Result<Mesh, Fault> {
         let scale = self.scale;
         if let Some(file) = &self.file {
-            let triangles = mesh_file::read(&folder.join(file)).in_field("file")?;
-            self.scaled(triangles).in_field("file")
+            let load = if self.open { load_open_mesh } else { load_mesh };
+            load(folder.join(file), scale).map_err(|error| file_fault(&error)).in_field("file")
         } else if let Some(t) = &self.torus {
             torus(t.radius * scale, t.tube_radius * scale, t.segments, t.sides).map_err(not_possible)
         } else if let Some(knot) = &self.torus_knot {
@@ -153,21 +154,29 @@ impl MeshEntry {
         }
     }
 
-    fn scaled(&self, triangles: Triangles) -> Result<Mesh, Fault> {
+    fn scaled(&self, triangles: TriangleList) -> Result<Mesh, Fault> {
         let vertices = triangles.vertices.into_iter().map(|v| v * self.scale).collect();
         let make = if self.open { Mesh::open } else { Mesh::new };
         make(vertices, triangles.triangles).map_err(not_possible)
     }
 }
 
-/// Vertices (metres) and the corners of triangles, as they come.
-pub(crate) struct Triangles {
-    pub(crate) vertices: Vec<Vec3>,
-    pub(crate) triangles: Vec<[u32; 3]>,
-}
+const MEND: &str = "mend the mesh, or say open = true if it is a fixed terrain";
 
 fn not_possible(error: impl std::fmt::Display) -> Fault {
-    Fault::new(error.to_string(), "mend the mesh, or say open = true if it is a fixed terrain")
+    Fault::new(error.to_string(), MEND)
+}
+
+fn file_fault(error: &MeshFileError) -> Fault {
+    let remedy = match error.problem {
+        MeshFileProblem::Unreadable(_) => "the name is relative to the folder of the scene file",
+        MeshFileProblem::TooLarge => "simplify the mesh",
+        MeshFileProblem::UnknownFormat => "convert the mesh to OBJ or STL",
+        MeshFileProblem::Scale(_) => "write a factor above 0",
+        MeshFileProblem::Parse(_) => "export the mesh again from its program",
+        MeshFileProblem::Mesh(_) => MEND,
+    };
+    Fault::new(error.to_string(), remedy)
 }
 
 impl TorusEntry {
@@ -233,7 +242,7 @@ impl TorusKnotEntry {
         Vec3::new(out * cos_p, self.winding_radius * sin_q, out * sin_p)
     }
 
-    fn build(&self) -> Triangles {
+    fn build(&self) -> TriangleList {
         let n = self.segments;
         let sections: Vec<Section> = (0..n)
             .map(|i| {
@@ -258,7 +267,7 @@ struct Section {
 }
 
 /// The closed tube round a ring of sections, wound counter-clockwise seen from outside.
-fn tube(sections: &[Section], radius: f32, sides: u32) -> Triangles {
+fn tube(sections: &[Section], radius: f32, sides: u32) -> TriangleList {
     let count = sections.len() as u32;
     let mut vertices = Vec::with_capacity(sections.len() * sides as usize);
     for section in sections {
@@ -275,7 +284,7 @@ fn tube(sections: &[Section], radius: f32, sides: u32) -> Triangles {
             triangles.push([at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]);
         }
     }
-    Triangles { vertices, triangles }
+    TriangleList { vertices, triangles }
 }
 
 /// Sine and cosine of `part / whole` of a full turn.

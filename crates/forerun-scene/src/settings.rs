@@ -3,8 +3,7 @@
 use forerun_dynamics::StepSettings;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Fault, Within};
-use crate::range;
+use crate::error::{Fault, Step};
 
 /// What a scene file changes in the settings of the step; what is left out keeps its default. See
 /// [`StepSettings`] for what each does.
@@ -48,21 +47,10 @@ pub struct SettingsEntry {
 
 impl SettingsEntry {
     pub(crate) fn check(&self) -> Result<(), Fault> {
-        let settings = self.over(StepSettings::default());
-        range::whole_between(settings.substeps, (1, 64), "substeps")?;
-        range::whole_between(settings.first_sweeps, (1, 64), "first_sweeps")?;
-        range::zero_or_more(settings.contact_margin_m, "contact_margin_m")?;
-        range::zero_or_more(settings.overlap_allowed_m, "overlap_allowed_m")?;
-        range::between(settings.overlap_recovery, (0.0, 1.0), "overlap_recovery")?;
-        range::zero_or_more(settings.recovery_speed_max, "recovery_speed_max")?;
-        range::between(settings.shock_yield, (0.0, 1.0), "shock_yield")?;
-        range::zero_or_more(settings.rest_speed, "rest_speed")?;
-        let slices = settings.slices_max;
-        if !(slices.is_power_of_two() && slices <= 64) {
-            let message = format!("must be 1, 2, 4, 8, 16, 32 or 64, is {slices}");
-            return Err(Fault::new(message, "1 switches the return in time off")).in_field("slices_max");
-        }
-        Ok(())
+        self.over(StepSettings::default()).check().map_err(|error| {
+            Fault::new(error.message, "leave the field out for its default")
+                .under(Step::Field(error.field.into()))
+        })
     }
 
     /// `settings` with what this changes.

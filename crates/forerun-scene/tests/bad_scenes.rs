@@ -255,7 +255,7 @@ const TOML: &[Bad] = &[
         text: "[meshes.mug]\nfile = \"no/such/mug.obj\"\n",
         line: 3,
         field: "meshes.mug.file",
-        says: &["cannot open", "mug.obj", "relative to the folder"],
+        says: &["cannot be read", "mug.obj", "relative to the folder"],
     },
     Bad {
         what: "mesh file of another kind",
@@ -422,7 +422,7 @@ const JSON: &[Bad] = &[
         text: "\"meshes\": {\n\"m\": { \"scale\": 2,\n\"file\": \"none.stl\" } } }",
         line: 4,
         field: "meshes.m.file",
-        says: &["cannot open"],
+        says: &["cannot be read"],
     },
     Bad {
         what: "command to a body that is not there",
@@ -446,6 +446,26 @@ fn files_that_cannot_be_read_are_named() {
     assert!(error.to_string().starts_with("no/such/scene.toml: cannot be read"), "{error}");
     let error = Scene::load("scene.xml").unwrap_err();
     assert!(error.to_string().contains(".toml or .json"), "{error}");
+}
+
+#[test]
+fn mistakes_in_mesh_files_are_named_by_their_own_line_too() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(folder.join("bent.obj"), "v 0 0 0\nv 1 0 0\nf 1 2 3\n").unwrap();
+    std::fs::write(folder.join("open.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let error = |file: &str| {
+        let path = folder.join("bad_mesh.toml");
+        std::fs::write(&path, format!("name = 'bad'\n[meshes.m]\nfile = '{file}'\n")).unwrap();
+        Scene::load(&path).unwrap().bodies().unwrap_err().to_string()
+    };
+    let bent = error("bent.obj");
+    for words in
+        ["bad_mesh.toml:3:8: meshes.m.file: ", "bent.obj: line 3: vertex 3 does not", "(export the mesh"]
+    {
+        assert!(bent.contains(words), "\"{words}\" is not in {bent}");
+    }
+    let open = error("open.obj");
+    assert!(open.contains("is not closed") && open.contains("open = true"), "{open}");
 }
 
 #[test]

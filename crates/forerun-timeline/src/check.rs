@@ -83,7 +83,7 @@ pub struct CheckReport {
 /// Makes random edits on a timeline of the bodies and compares it with full simulations. Calls `at` at the moments of each edit.
 ///
 /// # Errors
-/// When a body is not possible.
+/// When the environment or a body is not possible.
 pub fn check(
     bodies: &[BodyDef],
     environment: Environment,
@@ -144,8 +144,8 @@ impl CheckReport {
 /// Why there is no full run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FullRunError {
-    /// A body is not possible.
-    Body(TimelineError),
+    /// The environment or a body is not possible.
+    Start(TimelineError),
     /// A command is refused.
     Command(CommandError),
 }
@@ -153,7 +153,7 @@ pub enum FullRunError {
 impl fmt::Display for FullRunError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            FullRunError::Body(error) => write!(f, "{error}"),
+            FullRunError::Start(error) => write!(f, "{error}"),
             FullRunError::Command(error) => write!(f, "{error}"),
         }
     }
@@ -172,7 +172,7 @@ pub fn full_run(
     frames: u32,
 ) -> Result<Timeline, FullRunError> {
     let settings = TimelineSettings { lookahead: frames, past: frames, area_m: None };
-    let mut timeline = Timeline::new(bodies, environment, settings).map_err(FullRunError::Body)?;
+    let mut timeline = Timeline::new(bodies, environment, settings).map_err(FullRunError::Start)?;
     timeline.recompute_all();
     // Commands may name bodies that later ones add.
     let mut commands: Vec<Command> = commands.into_iter().collect();

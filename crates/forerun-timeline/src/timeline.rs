@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, bounds};
+use forerun_dynamics::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, EnvironmentError, bounds};
 
 use crate::affected::{Mutation, Scratch};
 use crate::areas::{Areas, Until};
@@ -115,16 +115,17 @@ impl Timeline {
     /// A timeline of the bodies, named 0, 1, 2, ... in their order, at frame 0.
     ///
     /// # Errors
-    /// When a body is not possible; the index and what is wrong with it.
+    /// When the environment or a body is not possible; the field, and the index of the body.
     pub fn new(
         bodies: &[BodyDef],
         environment: Environment,
         settings: TimelineSettings,
     ) -> Result<Timeline, TimelineError> {
+        environment.check().map_err(TimelineError::Environment)?;
         let mut made = Vec::with_capacity(bodies.len());
         let mut states = Vec::with_capacity(bodies.len());
         for (index, def) in bodies.iter().enumerate() {
-            let (body, state) = Body::new(def).map_err(|error| TimelineError { index, error })?;
+            let (body, state) = Body::new(def).map_err(|error| TimelineError::Body { index, error })?;
             made.push((Arc::new(def.clone()), Arc::new(body)));
             states.push(state);
         }
@@ -312,18 +313,26 @@ fn area_edge<'a>(bodies: impl Iterator<Item = &'a Body>) -> f32 {
     radii.get(radii.len() / 2).map_or(AREA_EDGE_M, |radius| (4.0 * radius).clamp(1e-3, 1e6))
 }
 
-/// Which body of a new timeline is not possible, and why.
+/// What of a new timeline is not possible, and why.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TimelineError {
-    /// Index of the body in the given list.
-    pub index: usize,
-    /// What is wrong with it.
-    pub error: BodyError,
+pub enum TimelineError {
+    /// Gravity or a setting.
+    Environment(EnvironmentError),
+    /// A body.
+    Body {
+        /// Index of the body in the given list.
+        index: usize,
+        /// What is wrong with it.
+        error: BodyError,
+    },
 }
 
 impl std::fmt::Display for TimelineError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "body {}: {}", self.index, self.error)
+        match self {
+            TimelineError::Environment(error) => write!(f, "environment: {error}"),
+            TimelineError::Body { index, error } => write!(f, "body {index}: {error}"),
+        }
     }
 }
 

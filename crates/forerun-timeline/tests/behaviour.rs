@@ -206,6 +206,23 @@ fn commands_that_cannot_be_obeyed_are_refused_with_a_reason() {
 }
 
 #[test]
+fn what_is_not_possible_makes_no_timeline() {
+    let refused = |bodies: &[BodyDef], change: fn(&mut Environment)| {
+        let mut environment = Environment::default();
+        change(&mut environment);
+        Timeline::new(bodies, environment, TimelineSettings::default()).unwrap_err().to_string()
+    };
+    assert_eq!(
+        refused(&[], |e| e.settings.frame_seconds = -1.0),
+        "environment: frame_seconds: must be from 0.00001 to 1, is -1"
+    );
+    assert!(refused(&[], |e| e.settings.substeps = 0).starts_with("environment: substeps: "));
+    assert!(refused(&[], |e| e.gravity.z = f32::INFINITY).starts_with("environment: gravity: "));
+    let bodies = [cube(0.0, 0.0), cube(f32::NAN, 0.0)];
+    assert!(refused(&bodies, |_| ()).starts_with("body 1: position: must be finite"));
+}
+
+#[test]
 fn commands_without_effect_are_counted_once() {
     let mut timeline = timeline(&far_piles(), 30);
     timeline.change(Frame(10), Change::Remove { body: BodyId(3) }).unwrap();

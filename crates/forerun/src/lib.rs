@@ -78,7 +78,8 @@ pub use driver::{
     Threads, ThreadsError,
 };
 pub use forerun_dynamics::{
-    Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, Mass, Material, StepSettings, World,
+    Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, Mass, Material,
+    StepSettings, World,
 };
 pub use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Sphere};
 pub use forerun_geometry::{Pose, Quat, Shape, Vec3};

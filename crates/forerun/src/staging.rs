@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use forerun_dynamics::{BodyError, World};
+use forerun_dynamics::{BodyError, EnvironmentError, World};
 use forerun_scene::{Scene, SceneCommand, SceneError};
 use forerun_timeline::{
     Change, Command, CommandError, CommandKey, Frame, Timeline, TimelineError, TimelineSettings,
@@ -15,6 +15,13 @@ use crate::BodyId;
 pub enum StagingError {
     /// The scene itself is at fault: file, place and remedy.
     Scene(SceneError),
+    /// Gravity or a setting of the scene is not possible.
+    Environment {
+        /// Name of the scene.
+        scene: String,
+        /// What is wrong with it.
+        error: EnvironmentError,
+    },
     /// A body of the scene is not possible.
     Body {
         /// Name of the scene.
@@ -37,6 +44,9 @@ impl fmt::Display for StagingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             StagingError::Scene(error) => write!(f, "{error}"),
+            StagingError::Environment { scene, error } => {
+                write!(f, "{scene}: {error}; change the scene or leave the field out")
+            }
             StagingError::Body { scene, index, error } => {
                 write!(f, "{scene}: bodies[{index}].{error}; change the body in the scene")
             }
@@ -73,9 +83,11 @@ pub fn timeline_of(scene: &Scene, settings: TimelineSettings) -> Result<Timeline
 
 /// A timeline of the scene's bodies at frame 0 alone.
 pub(crate) fn bare_timeline_of(scene: &Scene, settings: TimelineSettings) -> Result<Timeline, StagingError> {
-    Timeline::new(&scene.bodies()?, scene.environment(), settings).map_err(
-        |TimelineError { index, error }| StagingError::Body { scene: scene.name.clone(), index, error },
-    )
+    let scene_name = || scene.name.clone();
+    Timeline::new(&scene.bodies()?, scene.environment(), settings).map_err(|error| match error {
+        TimelineError::Environment(error) => StagingError::Environment { scene: scene_name(), error },
+        TimelineError::Body { index, error } => StagingError::Body { scene: scene_name(), index, error },
+    })
 }
 
 /// A world of the scene's bodies at frame 0, without its commands.
