@@ -10,6 +10,7 @@ mod free_rotation;
 mod newton_chain;
 mod off_centre_impact;
 mod rolling_down;
+mod sampling;
 mod spinning_ball;
 
 /// All cases, in the order in which they are run.
@@ -23,6 +24,7 @@ pub(crate) const CASES: &[Case] = &[
     Case { id: "spinning_ball", run: spinning_ball::run },
     Case { id: "euler_disc", run: euler_disc::run },
     Case { id: "newton_chain", run: newton_chain::run },
+    Case { id: "sampling", run: sampling::run },
 ];
 
 #[cfg(test)]
