@@ -113,7 +113,10 @@ fn a_kinematic_body_pushes_what_rests_and_drops_what_it_carried() {
     ]);
     run(&mut world, 300);
     let full = world.environment.settings.rest_frames();
-    assert!(world.states()[2].rest > full && world.states()[4].rest > full, "the blocks have not come to rest");
+    assert!(
+        world.states()[2].rest > full && world.states()[4].rest > full,
+        "the blocks have not come to rest"
+    );
     world.states_mut()[1].velocity.x = 1.0;
     world.states_mut()[3].velocity.x = 8.0;
     run(&mut world, 240);

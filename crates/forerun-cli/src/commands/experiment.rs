@@ -15,7 +15,7 @@ use crate::results::{make_folder, write_playback, write_text};
 use crate::scene_arg;
 
 /// How much of `meshes` the calibration looks at: to well after the first impact. Seconds.
-const CALIBRATION_SECONDS: f64 = 5.0;
+const CALIBRATION_SECONDS: f64 = 4.0;
 
 /// `forerun experiment`.
 pub(crate) fn run(args: &ExperimentArgs) -> Result<(), Failure> {

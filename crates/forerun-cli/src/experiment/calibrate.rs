@@ -11,7 +11,7 @@ const BODIES_MIN: u32 = 60;
 /// How much the impact is to be slower than the longest step of the traditional model.
 const MARGIN: f64 = 1.25;
 /// Mean cost over the length of a frame, at most.
-const LOAD_MAX: f64 = 0.7;
+const LOAD_MAX: f64 = 0.75;
 const ROUNDS_MAX: u32 = 8;
 
 /// What the calibration found.
@@ -55,14 +55,9 @@ pub(crate) fn meshes_for_this_machine(
 }
 
 fn measure(scene: &Scene, bodies: u32, threads: &Threads, frames: u32) -> Result<Calibration, Failure> {
-    let mut world = world_of(scene)?;
-    let clock = Clock::system();
-    let step_ms = |_| {
-        let start = clock.now();
-        threads.install(|| world.step(&mut Unobserved));
-        1000.0 * (clock.now() - start).as_secs_f64()
-    };
-    let times_ms: Vec<f64> = (0..frames.max(1)).map(step_ms).collect();
+    // Of each frame the faster of two passes: what else runs on the machine does not slow both.
+    let passes = [step_times_ms(scene, threads, frames)?, step_times_ms(scene, threads, frames)?];
+    let times_ms: Vec<f64> = passes[0].iter().zip(&passes[1]).map(|(a, b)| a.min(*b)).collect();
     let window = ((0.1 / scene.frame_seconds) as usize).clamp(1, times_ms.len());
     let mean = |times: &[f64]| times.iter().sum::<f64>() / times.len() as f64;
     Ok(Calibration {
@@ -71,4 +66,15 @@ fn measure(scene: &Scene, bodies: u32, threads: &Threads, frames: u32) -> Result
         impact_ms: times_ms.windows(window).map(mean).fold(0.0, f64::max),
         reached: false,
     })
+}
+
+fn step_times_ms(scene: &Scene, threads: &Threads, frames: u32) -> Result<Vec<f64>, Failure> {
+    let mut world = world_of(scene)?;
+    let clock = Clock::system();
+    let step_ms = |_| {
+        let start = clock.now();
+        threads.install(|| world.step(&mut Unobserved));
+        1000.0 * (clock.now() - start).as_secs_f64()
+    };
+    Ok((0..frames.max(1)).map(step_ms).collect())
 }

@@ -7,6 +7,7 @@
 use forerun_geometry::Vec3;
 
 use super::contact_graph::{ContactGraph, Link, TOUCH_M};
+use super::prepare::combine;
 use crate::narrow_phase::Contact;
 use crate::{Environment, Member};
 
@@ -26,6 +27,8 @@ pub(crate) struct Load {
     pub(crate) total: [f32; 4],
     /// Weight alone: what the later substeps start from.
     pub(crate) weight: [f32; 4],
+    /// Which way friction pushes the second body, where the two slide: a unit vector; else zero.
+    pub(crate) slide: Vec3,
 }
 
 /// A vertical load and its first moments about the body's centre.
@@ -47,7 +50,7 @@ impl Carried {
 /// A contact point below a body.
 #[derive(Clone, Copy, Debug)]
 struct Support {
-    /// Horizontal place relative to the body's centre.
+    /// Horizontal place relative to the body's centre, where the line of the force, friction of a slide included, is as high as the centre.
     x: f32,
     z: f32,
     contact: u32,
@@ -100,7 +103,8 @@ pub(crate) struct LoadPass<'a> {
 impl LoadPass<'_> {
     /// The load of every contact, and the strain of every body.
     pub(crate) fn run(&self) -> (Vec<Load>, Vec<Strain>) {
-        let mut loads = vec![Load::default(); self.contacts.len()];
+        let mut loads: Vec<Load> =
+            self.contacts.iter().map(|c| Load { slide: self.slide(c), ..Load::default() }).collect();
         let mut strains = vec![Strain::default(); self.members.len()];
         let Some(compass) = Compass::new(self.environment.gravity) else {
             return (loads, strains);
@@ -114,7 +118,7 @@ impl LoadPass<'_> {
             if !self.members[i].body.is_dynamic() {
                 continue;
             }
-            self.supports_of(i, &compass, &mut supports);
+            self.supports_of(i, &compass, &loads, &mut supports);
             let own = 1.0 / self.members[i].body.inverse_mass;
             let weight = own * self.fall(i, &compass) * self.fall(i, &compass);
             strains[i].weight = weight;
@@ -129,8 +133,7 @@ impl LoadPass<'_> {
                 let (c, p, j) = (s.contact as usize, s.point as usize, s.below as usize);
                 loads[c].total[p] = s.total * s.rise;
                 loads[c].weight[p] = s.still * s.rise;
-                let offset = self.members[i].state.position - self.members[j].state.position;
-                let (x, z) = (s.x + offset.dot(compass.one), s.z + offset.dot(compass.two));
+                let (x, z) = self.place(&self.contacts[c], (p, j), &compass, loads[c].slide);
                 total[j].add(s.total, x, z);
                 still[j].add(s.still, x, z);
             }
@@ -182,7 +185,9 @@ impl LoadPass<'_> {
             let mut lowest: Option<f32> = None;
             for (link, point) in self.points_below(i, compass) {
                 let separation = self.contacts[link.contact as usize].manifold.points[point].separation;
-                let here = allowed[link.body as usize] + separation.max(0.0) / h;
+                let here = allowed[link.body as usize]
+                    + separation.max(0.0) / h
+                    + self.descent(i, link, point, compass);
                 lowest = Some(lowest.map_or(here, |l| l.min(here)));
             }
             let Some(lowest) = lowest else {
@@ -201,6 +206,14 @@ impl LoadPass<'_> {
                 total[i].moment_2 += l.dot(compass.one) * part;
             }
         }
+    }
+
+    /// How fast a body sinks by moving along the surface that a point below it lies on. m/s
+    fn descent(&self, i: usize, link: &Link, point: usize, compass: &Compass) -> f32 {
+        let normal = self.contacts[link.contact as usize].manifold.points[point].normal;
+        let velocity = self.members[i].state.velocity - self.members[link.body as usize].state.velocity;
+        let along = velocity - normal * velocity.dot(normal);
+        -along.dot(compass.up)
     }
 
     /// The points on which a body may rest: of contacts with lower bodies, near enough, rising.
@@ -226,16 +239,57 @@ impl LoadPass<'_> {
         if contact.second as usize == upper { rise } else { -rise }
     }
 
-    fn supports_of(&self, i: usize, compass: &Compass, out: &mut Vec<Support>) {
+    /// Which way friction pushes the second body of a contact, where a body slides on one that does not yield faster than friction can stop within
+    /// the frame. (Two bodies that a jolt sets sliding on each other soon stick again: guessed as slides they make piles with heavy tops collapse.)
+    fn slide(&self, contact: &Contact) -> Vec3 {
+        let m = &contact.manifold;
+        let (a, b) = (&self.members[contact.first as usize], &self.members[contact.second as usize]);
+        if a.body.is_dynamic() && b.body.is_dynamic() {
+            return Vec3::ZERO;
+        }
+        let points = &m.points[..m.count as usize];
+        let centre = points.iter().fold(Vec3::ZERO, |sum, p| sum + p.position) / m.count as f32;
+        let velocity = b.state.velocity_at(centre) - a.state.velocity_at(centre);
+        let along = velocity - m.normal * velocity.dot(m.normal);
+        let speed = along.length();
+        let friction = combine(&a.body.material, &b.body.material).friction;
+        let stopped = friction * self.environment.gravity.length() * self.environment.settings.frame_seconds;
+        if speed > stopped { along / -speed } else { Vec3::ZERO }
+    }
+
+    /// Where a contact point's force acts on a body: its horizontal place relative to the centre, at the height of the centre.
+    fn place(
+        &self,
+        contact: &Contact,
+        (point, body): (usize, usize),
+        compass: &Compass,
+        slide: Vec3,
+    ) -> (f32, f32) {
+        let p = &contact.manifold.points[point];
+        let r = p.position - self.members[body].state.position;
+        let (mut x, mut z) = (r.dot(compass.one), r.dot(compass.two));
+        if slide != Vec3::ZERO {
+            let (a, b) = (&self.members[contact.first as usize], &self.members[contact.second as usize]);
+            let force = p.normal + slide * combine(&a.body.material, &b.body.material).friction;
+            let rise = force.dot(compass.up);
+            if rise.abs() > RISE_MIN {
+                let t = r.dot(compass.up) / rise;
+                x -= t * force.dot(compass.one);
+                z -= t * force.dot(compass.two);
+            }
+        }
+        (x, z)
+    }
+
+    fn supports_of(&self, i: usize, compass: &Compass, loads: &[Load], out: &mut Vec<Support>) {
         out.clear();
-        let centre = self.members[i].state.position;
         for (link, p) in self.points_below(i, compass) {
             let contact = &self.contacts[link.contact as usize];
             let point = &contact.manifold.points[p];
-            let r = point.position - centre;
+            let (x, z) = self.place(contact, (p, i), compass, loads[link.contact as usize].slide);
             out.push(Support {
-                x: r.dot(compass.one),
-                z: r.dot(compass.two),
+                x,
+                z,
                 contact: link.contact,
                 point: p as u32,
                 below: link.body,

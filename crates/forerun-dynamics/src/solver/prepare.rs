@@ -10,6 +10,8 @@ use crate::narrow_phase::Contact;
 use crate::{Material, Member};
 
 const TINY: f32 = 1e-12;
+/// Points this much higher than the lowest have no part in the friction. Metres.
+const NEAR_M: f32 = 0.002;
 /// Below this rise a contact has no vertical share to speak of.
 const RISE_MIN: f32 = 0.2;
 
@@ -36,6 +38,7 @@ struct Arrays {
     yields: [[f32; LANES]; 2],
     friction: [[f32; LANES]; 2],
     restitution: [f32; LANES],
+    slide: [[f32; LANES]; 3],
 }
 
 dispatched! {
@@ -65,6 +68,7 @@ fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
         yields: [[1.0; LANES]; 2],
         friction: [z; 2],
         restitution: z,
+        slide: [z; 3],
     };
     for lane in 0..LANES {
         let k = block.source[lane];
@@ -86,6 +90,9 @@ fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
             lanes.valid[p][lane] = 1.0;
             lanes.total[p][lane] = source.loads[k as usize].total[p];
             lanes.weight[p][lane] = source.loads[k as usize].weight[p];
+        }
+        for (axis, value) in source.loads[k as usize].slide.to_array().into_iter().enumerate() {
+            lanes.slide[axis][lane] = value;
         }
         let (first, second) = (contact.first as usize, contact.second as usize);
         let material = combine(&source.members[first].body.material, &source.members[second].body.material);
@@ -110,7 +117,7 @@ fn lighter_share(above: f32, below: f32) -> f32 {
 }
 
 /// Friction is the geometric mean, restitution the larger of the two.
-fn combine(a: &Material, b: &Material) -> Material {
+pub(crate) fn combine(a: &Material, b: &Material) -> Material {
     Material {
         friction: (a.friction * b.friction).sqrt(),
         static_friction: (a.static_friction * b.static_friction).sqrt(),
@@ -203,17 +210,38 @@ fn fill<F: Lanes>(block: &mut Block<F>, lanes: &Arrays, bodies: &Bodies, up: Vec
     let length2 = normal.dot(normal);
     let k = a.k(length2, first) + b.k(length2, second) + F::splat(TINY);
     block.centre = CentreRow { normal, first, second, inverse_k: F::one() / k, inverse_count };
-    let centre = mean * inverse_count;
+    let near = nearness(lanes);
+    let (mut centre, mut total) = (V8::zero(), F::splat(TINY));
+    for q in 0..4 {
+        let weight = F::from_array(near[q]);
+        centre = centre + positions[q] * weight;
+        total += weight;
+    }
+    let centre = centre * (F::one() / total);
     let normal = V8::from_arrays(lanes.normal);
     fill_friction(&mut block.friction, &a, &b, normal, centre);
     block.friction.static_coefficient = F::from_array(lanes.friction[0]);
     block.friction.kinetic_coefficient = F::from_array(lanes.friction[1]);
     let mut radius = F::zero();
     for q in 0..4 {
-        radius += F::from_array(lanes.valid[q]) * (positions[q] - centre).length();
+        radius += F::from_array(near[q]) * (positions[q] - centre).length();
     }
-    block.friction.radius = radius * inverse_count;
+    block.friction.radius = radius / total;
     guess_friction(block, lanes, &positions, centre, up);
+}
+
+/// How much of the friction each point answers for: 1 for the lowest, 0 for those that are further than [`NEAR_M`] above it.
+#[inline(always)]
+fn nearness(lanes: &Arrays) -> [[f32; LANES]; 4] {
+    let mut near = [[0.0; LANES]; 4];
+    for lane in 0..LANES {
+        let least = (0..4).fold(f32::INFINITY, |least, q| least.min(lanes.separation[q][lane]));
+        for q in 0..4 {
+            let above = lanes.separation[q][lane] - least;
+            near[q][lane] = lanes.valid[q][lane] * (1.0 - above / NEAR_M).max(0.0);
+        }
+    }
+    near
 }
 
 #[inline(always)]
@@ -255,7 +283,13 @@ fn guess_friction<F: Lanes>(
     up: Vec3,
 ) {
     let up = V8 { x: F::splat(up.x), y: F::splat(up.y), z: F::splat(up.z) };
-    let place = Place { positions, centre, normal: V8::from_arrays(lanes.normal), up };
+    let place = Place {
+        positions,
+        centre,
+        normal: V8::from_arrays(lanes.normal),
+        up,
+        slide: V8::from_arrays(lanes.slide),
+    };
     let mut total = [F::zero(); 4];
     let mut weight = [F::zero(); 4];
     for q in 0..4 {
@@ -277,6 +311,8 @@ struct Place<'a, F> {
     centre: V8<F>,
     normal: V8<F>,
     up: V8<F>,
+    /// Which way friction pushes the second body, where the two slide; else zero.
+    slide: V8<F>,
 }
 
 impl<F: Lanes> Place<'_, F> {
@@ -294,6 +330,8 @@ impl<F: Lanes> Place<'_, F> {
             loaded = loaded + self.positions[q] * impulses[q];
             sum += impulses[q];
         }
+        let slides = self.slide.dot(self.slide).gt(F::splat(0.5));
+        let tangential = slides.select_v(self.slide * (sum * rows.kinetic_coefficient), tangential);
         let (x, y) = (tangential.dot(rows.tangents[0]), tangential.dot(rows.tangents[1]));
         let length = (x * x + y * y).sqrt();
         let limit = sum * rows.kinetic_coefficient;

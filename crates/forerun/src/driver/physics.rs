@@ -13,9 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
 
 use arc_swap::ArcSwap;
-use forerun_timeline::{
-    Change, Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline,
-};
+use forerun_timeline::{Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline};
 
 use super::frame_notes::{FrameNote, FrameNotes};
 use super::reach::Reach;
