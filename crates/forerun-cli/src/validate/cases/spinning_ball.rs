@@ -2,6 +2,7 @@
 //!
 //! PhysBAM, Bounce_Friction_Example and Rolling_Friction_Example: g = 9.8 m/s², radius 1 m, dropped by 9 m with a spin of 10 rad/s, restitution 0.5.
 //! With friction 0.8 the impact sticks: 2/7 of the spin is left. With 0.05 it slides: the speed is μ (1 + e) v.
+//! A mesh of the ball is held to the limits of the ball.
 
 use forerun::dynamics::{BodyDef, BodyState, Material};
 use forerun::geometry::shape::{Sphere, mesh_make};
