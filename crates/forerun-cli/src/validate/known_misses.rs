@@ -28,7 +28,7 @@ const fn miss(case: &'static str, figure: &'static str, value: f64, cause: &'sta
 }
 
 const TIPS: &str = "the column of two cubes is exactly at its tipping point: an unstable equilibrium";
-const FACETS: &str = "a ball of 2420 facets loses spin at every edge; 5 to 17 % of the way by theory";
+const FACETS: &str = "a ball of 2420 facets loses spin at every edge it rolls over; how much of the miss that explains is open";
 const FACETS_BOUNCE: &str = "points that mirror each other bounce one after the other, not together";
 const ROUNDS: &str = "30000 roundings of the stored state next to a separatrix";
 
