@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use forerun::{BodyId, BodyKind, Playback, PlaybackSettings, Scene};
+use forerun::dynamics::Unobserved;
+use forerun::{BodyId, BodyKind, DriverKind, Playback, PlaybackSettings, Scene, world_of};
 
 use super::run::{DISSERTATION_FRAME_SECONDS, play_with_bar};
 use crate::args::{ExperimentArg, ExperimentArgs};
+use crate::bench;
 use crate::charts;
 use crate::experiment::{self, Calibration, Figure, FigureKind, Outcome, Plan, Variant};
 use crate::failure::Failure;
@@ -83,13 +85,31 @@ fn run_plan(plan: &Plan, args: &ExperimentArgs, note: &str) -> Result<Vec<Outcom
         let playback = play_with_bar(&scene, &settings)?;
         write_playback(&playback, &variant_folder)?;
         let highest_m = highest_m(&scene, &playback)?;
-        outcomes.push(Outcome { label, playback, highest_m });
+        let overlap_max_m = overlap_max_m(&scene, driver, seconds)?;
+        outcomes.push(Outcome { label, playback, highest_m, overlap_max_m });
     }
     for figure in plan.figures {
         draw(&figure, &outcomes, &folder)?;
     }
     write_text(&folder.join("report.md"), &experiment::markdown(plan, &outcomes, note))?;
     Ok(outcomes)
+}
+
+/// The deepest overlap of the frames that were played. They are computed once more, bit for bit the same; that is why the coupled driver, whose
+/// steps follow the clock, and scenes with many bodies or commands are left out.
+fn overlap_max_m(scene: &Scene, driver: DriverKind, seconds: f64) -> Result<Option<f32>, Failure> {
+    const BODIES_MAX: usize = 64;
+    if driver == DriverKind::Coupled || scene.bodies.len() > BODIES_MAX || !scene.commands.is_empty() {
+        return Ok(None);
+    }
+    let mut world = world_of(scene)?;
+    let frames = (seconds / f64::from(scene.frame_seconds)) as u32;
+    let mut deepest = 0.0f32;
+    for _ in 0..frames {
+        world.step(&mut Unobserved);
+        deepest = deepest.max(bench::overlap_m(&world));
+    }
+    Ok(Some(deepest))
 }
 
 /// Bodies that commands add come after those of the scene, and are not fixed in these experiments.
