@@ -24,9 +24,9 @@ pub(crate) enum Command {
     Experiment(ExperimentArgs),
     /// List the built-in scenes, or print one as a file
     Scenes(ScenesArgs),
-    /// Edit a scene at random and compare every state with a full re-simulation, bit for bit
+    /// Edit a scene at random and compare every state with a full re-simulation, bit for bit (its own commands are left out)
     Check(CheckArgs),
-    /// Measure the step on scenes, with guards on its quality
+    /// Measure the step on scenes, with guards on its quality (their commands are left out)
     Bench(BenchArgs),
     /// Compare with formulas and measurements from the literature
     Validate(ValidateArgs),

@@ -7,4 +7,5 @@ mod overlap;
 mod storage;
 
 pub(crate) use measure::{Measurement, Run, measure};
+pub(crate) use overlap::deepest_m as overlap_m;
 pub(crate) use storage::bytes_per_body_frame;

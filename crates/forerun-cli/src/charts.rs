@@ -54,6 +54,8 @@ pub(crate) struct Panel {
     pub(crate) title: String,
     pub(crate) y_label: &'static str,
     pub(crate) legend: Legend,
+    /// Where the time axis begins and ends (seconds); the whole of the lines when none.
+    pub(crate) window: Option<(f64, f64)>,
     pub(crate) lines: Vec<Line>,
 }
 
@@ -87,13 +89,14 @@ fn draw_panel<DB: DrawingBackend>(
     panel: &Panel,
 ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
     let (x_max, y_max) = extent(&panel.lines);
+    let (from, to) = panel.window.unwrap_or((0.0, x_max));
     let mut chart = ChartBuilder::on(area)
         .caption(&panel.title, (FONT, 24).into_font().color(&BLACK))
         .margin(14)
         .margin_right(30)
         .x_label_area_size(54)
         .y_label_area_size(78)
-        .build_cartesian_2d(0.0..x_max, 0.0..y_max)?;
+        .build_cartesian_2d(from..to, 0.0..y_max)?;
     chart
         .configure_mesh()
         .x_desc(X_LABEL)
@@ -110,7 +113,7 @@ fn draw_panel<DB: DrawingBackend>(
         .draw()?;
     for line in &panel.lines {
         let style = line.colour.stroke_width(line.width);
-        let points = line.points.iter().copied();
+        let points = line.points.iter().copied().filter(|(x, _)| (from..=to).contains(x));
         match line.stroke {
             Stroke::Solid => chart
                 .draw_series(LineSeries::new(points, style))?
@@ -142,12 +145,12 @@ fn legend_ends((x, y): (i32, i32)) -> [(i32, i32); 2] {
     [(x, y), (x + 31, y)]
 }
 
-/// The axes' ends: the largest values, rounded up so that the last tick has a number.
+/// The axes' ends: the largest values, rounded up so that the last tick has a number; time to a tenth of a second.
 fn extent(lines: &[Line]) -> (f64, f64) {
     let points = || lines.iter().flat_map(|line| &line.points);
     let x_max = points().map(|p| p.0).fold(0.0, f64::max);
     let y_max = points().map(|p| p.1).fold(0.0, f64::max);
-    (if x_max > 0.0 { x_max } else { 1.0 }, round_up(y_max * 1.04))
+    (if x_max > 0.0 { (10.0 * x_max).ceil() / 10.0 } else { 1.0 }, round_up(y_max * 1.04))
 }
 
 /// The next number up of the form 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten.

@@ -59,3 +59,16 @@ impl fmt::Display for Failure {
         }
     }
 }
+
+/// All of these name their place and remedy themselves.
+macro_rules! input_failure {
+    ($($error:ty),*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Failure::Input(error.to_string())
+            }
+        })*
+    };
+}
+
+input_failure!(forerun::PlaybackError, forerun::SceneError, forerun::StagingError, forerun::ThreadsError);

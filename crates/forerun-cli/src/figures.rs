@@ -7,8 +7,10 @@ use crate::charts::{
     BLUE_LINE, GREEN_LINE, GREY_LINE, Legend, Line, ORANGE_LINE, PURPLE_LINE, Panel, Stroke,
 };
 
+/// Length of a close look. Seconds.
+const ZOOM_S: f64 = 0.5;
 /// Width of a line that others may lie on. Pixels.
-const WIDE: u32 = 6;
+const WIDE: u32 = 4;
 
 /// A recorded playback and what the legend calls it.
 #[derive(Clone, Copy)]
@@ -24,7 +26,8 @@ pub(crate) fn queue(title: &str, decoupled: &[QueueRow]) -> Panel {
     let mut lines = vec![most];
     if apart {
         lines[0].width = WIDE;
-        lines.push(line("fewest states of a body", ORANGE_LINE, decoupled, |row| f64::from(row.queue_low)));
+        let fewest = line("fewest states of a body", ORANGE_LINE, decoupled, |row| f64::from(row.queue_low));
+        lines.push(Line { width: 2, ..fewest });
     } else {
         "states of every body".clone_into(&mut lines[0].name);
     }
@@ -32,8 +35,16 @@ pub(crate) fn queue(title: &str, decoupled: &[QueueRow]) -> Panel {
         title: title.to_owned(),
         y_label: "states ahead of the display",
         legend: Legend::LowerRight,
+        window: None,
         lines,
     }
+}
+
+/// The half second around the picture with the fewest states, the start left out.
+pub(crate) fn queue_at_lowest(title: &str, decoupled: &[QueueRow]) -> Panel {
+    let later = decoupled.iter().filter(|row| row.time_real_s > ZOOM_S);
+    let lowest = later.min_by_key(|row| row.queue_low).map_or(ZOOM_S, |row| row.time_real_s);
+    Panel { window: Some((lowest - 0.5 * ZOOM_S, lowest + 0.5 * ZOOM_S)), ..queue(title, decoupled) }
 }
 
 /// Display time and physics time against real time (figures 5.3, 5.6, 5.9, 5.13).
@@ -50,7 +61,13 @@ pub(crate) fn times(title: &str, decoupled: Recorded, coupled: Option<Recorded>)
     }
     let real = line("real time", GREY_LINE, rows, |row| row.time_real_s);
     lines.push(Line { stroke: Stroke::Dashed, ..real });
-    Panel { title: title.to_owned(), y_label: "simulated time (s)", legend: Legend::UpperLeft, lines }
+    Panel {
+        title: title.to_owned(),
+        y_label: "simulated time (s)",
+        legend: Legend::UpperLeft,
+        window: None,
+        lines,
+    }
 }
 
 /// The time step of the displayed frame (figure 5.13).
@@ -64,7 +81,13 @@ pub(crate) fn time_steps(title: &str, recorded: &[Recorded]) -> Panel {
     let mut lines: Vec<Line> = lines.collect();
     // Only the first lies under others.
     lines.iter_mut().skip(1).for_each(|line| line.width = 2);
-    Panel { title: title.to_owned(), y_label: "time step (ms)", legend: Legend::LowerRight, lines }
+    Panel {
+        title: title.to_owned(),
+        y_label: "time step (ms)",
+        legend: Legend::LowerRight,
+        window: None,
+        lines,
+    }
 }
 
 fn line(name: &str, colour: RGBColor, rows: &[QueueRow], value: impl Fn(&QueueRow) -> f64) -> Line {

@@ -12,7 +12,6 @@ mod figures;
 mod output;
 mod progress;
 mod results;
-mod scene_arg;
 mod stats;
 mod validate;
 

@@ -57,7 +57,9 @@ pub fn motion(body: &Body, state: &BodyState, environment: &Environment) -> Moti
 /// Contacts of a pair are found this far ahead. Metres.
 #[must_use]
 pub fn pair_margin(first: &(Motion, f32), second: &(Motion, f32), environment: &Environment) -> f32 {
-    let approach = (first.0.linear - second.0.linear).length();
+    // Two bodies that fall together meet when the first of them is stopped: the faster one counts, not only the difference.
+    let (a, b) = (first.0.linear, second.0.linear);
+    let approach = (a - b).length().max(a.length()).max(b.length());
     let spin = |(motion, radius): &(Motion, f32)| {
         let turn = motion.angular.length().min(2.0);
         if turn > 0.0 { turn * radius } else { 0.0 }

@@ -47,6 +47,9 @@ pub struct StepSettings {
     pub rest_seconds: f32,
     /// A body that overlaps deeper than this does not come to rest. Metres, default 0.01.
     pub rest_overlap_m: f32,
+    /// A frame of an island that makes an overlap deeper by more than this part of the thinner body's half thickness is thrown away and done again in
+    /// twice as many slices. Above 0, default 0.1.
+    pub deep_overlap_part: f32,
     /// Most slices that a frame of an island is cut into (a power of two up to 64). 1 switches the return in time off. Default 8.
     pub slices_max: u32,
 }
@@ -66,6 +69,7 @@ impl Default for StepSettings {
             rest_speed: 0.05,
             rest_seconds: 2.0,
             rest_overlap_m: 0.01,
+            deep_overlap_part: 0.1,
             slices_max: 8,
         }
     }
@@ -121,6 +125,7 @@ impl StepSettings {
             ("rest_speed", self.rest_speed),
             ("rest_seconds", self.rest_seconds),
             ("rest_overlap_m", self.rest_overlap_m),
+            ("deep_overlap_part", self.deep_overlap_part),
         ] {
             require(value >= 0.0 && value.is_finite(), field, value, "0 or more")?;
         }

@@ -7,10 +7,8 @@ use crate::plan::{Island, Plan, half_thickness, pack};
 use crate::solver::{Batch, fly};
 use crate::{Body, BodyId, BodyKind, BodyState, Environment, Observer, Stage};
 
-/// An overlap that a frame makes deeper by this part of the thinner body's half thickness is too deep.
-const DEEP_PART: f32 = 0.1;
-/// Or by this much, whichever is more. Metres.
-const DEEP_M: f32 = 0.01;
+/// An overlap that grows by less than this is never too deep. Metres.
+const DEEP_M: f32 = 0.001;
 
 /// A body of a group, at the frame that is to be advanced.
 #[derive(Clone, Copy, Debug)]
@@ -249,9 +247,10 @@ impl<'a> Slicer<'a> {
         if self.environment.settings.slices_max <= self.count {
             return;
         }
+        let part = self.environment.settings.deep_overlap_part;
         for (contact, growth) in batch.contacts.iter().zip(batch.overlap_growth()) {
             let (a, b) = (&batch.members[contact.first as usize], &batch.members[contact.second as usize]);
-            if growth > (DEEP_PART * half_thickness(a, b)).max(DEEP_M) {
+            if growth > (part * half_thickness(a, b)).max(DEEP_M) {
                 let dynamic = if a.body.is_dynamic() { a.id } else { b.id };
                 let at = self.group.members.partition_point(|m| m.id < dynamic);
                 let island = self.plan.island_of[at];

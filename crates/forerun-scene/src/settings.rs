@@ -40,6 +40,9 @@ pub struct SettingsEntry {
     /// Metres, 0 or more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_overlap_m: Option<f32>,
+    /// Above 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deep_overlap_part: Option<f32>,
     /// A power of two from 1 to 64.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slices_max: Option<u32>,
@@ -66,6 +69,7 @@ impl SettingsEntry {
             rest_speed: self.rest_speed.unwrap_or(settings.rest_speed),
             rest_seconds: self.rest_seconds.unwrap_or(settings.rest_seconds),
             slices_max: self.slices_max.unwrap_or(settings.slices_max),
+            deep_overlap_part: self.deep_overlap_part.unwrap_or(settings.deep_overlap_part),
             rest_overlap_m: self.rest_overlap_m.unwrap_or(settings.rest_overlap_m),
             ..settings
         }

@@ -89,6 +89,7 @@ impl Writer {
         self.optional("rest_speed", &s.rest_speed);
         self.optional("rest_seconds", &s.rest_seconds);
         self.optional("rest_overlap_m", &s.rest_overlap_m);
+        self.optional("deep_overlap_part", &s.deep_overlap_part);
         self.optional("slices_max", &s.slices_max);
     }
 

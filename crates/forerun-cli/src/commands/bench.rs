@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU16;
 
-use forerun::{Threads, TimelineSettings, timeline_of, world_of};
+use forerun::{Scene, Threads, TimelineSettings, timeline_of, world_of};
 use serde::Serialize;
 
 use crate::args::BenchArgs;
@@ -10,7 +10,6 @@ use crate::bench::{Measurement, Run, bytes_per_body_frame, measure};
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::progress;
-use crate::scene_arg;
 
 #[derive(Serialize)]
 struct BenchReport {
@@ -21,9 +20,9 @@ struct BenchReport {
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     // The argument's range begins at 1.
     let count = NonZeroU16::new(args.threads).unwrap_or(NonZeroU16::MIN);
-    let threads = Threads::exactly(count).map_err(|error| Failure::Input(error.to_string()))?;
+    let threads = Threads::exactly(count)?;
     // All scenes are opened first: a misspelt name is not to cost the measurements before it.
-    let scenes = args.scenes.iter().map(|typed| scene_arg::open(typed)).collect::<Result<Vec<_>, _>>()?;
+    let scenes = args.scenes.iter().map(|typed| Scene::open(typed)).collect::<Result<Vec<_>, _>>()?;
     let mut measured = Vec::new();
     for (typed, scene) in args.scenes.iter().zip(&scenes) {
         let bar = progress::bar(u64::from(args.frames), typed);

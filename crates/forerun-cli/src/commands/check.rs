@@ -12,7 +12,6 @@ use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::progress;
-use crate::scene_arg;
 use crate::stats::Spread;
 
 /// The result; the fields are those of `check --json`.
@@ -39,8 +38,8 @@ struct Verdict {
 
 /// `forerun check`.
 pub(crate) fn run(args: &CheckArgs) -> Result<(), Failure> {
-    let scene = scene_arg::open(&args.scene)?;
-    let bodies = scene.bodies().map_err(|error| Failure::Input(error.to_string()))?;
+    let scene = Scene::open(&args.scene)?;
+    let bodies = scene.bodies()?;
     let bar = progress::bar(u64::from(args.edits) * args.threads.len() as u64, &args.scene);
     let mut first: Option<(CheckReport, Times)> = None;
     let mut plain: Option<Timeline> = None;
@@ -48,7 +47,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), Failure> {
     for &count in &args.threads {
         // The argument's range begins at 1.
         let count = NonZeroU16::new(count).unwrap_or(NonZeroU16::MIN);
-        let threads = Threads::exactly(count).map_err(|error| Failure::Input(error.to_string()))?;
+        let threads = Threads::exactly(count)?;
         let (report, times) = threads.install(|| check_timed(&scene, &bodies, args, &|| bar.inc(1)))?;
         let run = threads.install(|| unedited(&scene, &bodies, args.frames))?;
         let across = plain.as_ref().map_or((0, None), |reference| mismatches(&run, reference));

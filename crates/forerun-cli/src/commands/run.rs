@@ -12,7 +12,6 @@ use crate::figures::{self, Recorded};
 use crate::output::{print, print_json};
 use crate::progress;
 use crate::results::{make_folder, write_playback};
-use crate::scene_arg;
 
 /// Length of the dissertation's experiments. Seconds.
 pub(crate) const DISSERTATION_SECONDS: f64 = 30.0;
@@ -21,7 +20,7 @@ pub(crate) const DISSERTATION_FRAME_SECONDS: f32 = 0.030;
 
 /// `forerun run`.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
-    let scene = scene_arg::open(&args.scene)?;
+    let scene = Scene::open(&args.scene)?;
     let settings = PlaybackSettings {
         driver: match args.driver {
             DriverArg::Decoupled => DriverKind::Decoupled,
@@ -47,7 +46,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
 
 /// `forerun` alone: the dissertation's first experiment, decoupled.
 pub(crate) fn main_job() -> Result<(), Failure> {
-    let mut scene = scene_arg::open("dominoes:255")?;
+    let mut scene = Scene::open("dominoes:255")?;
     scene.frame_seconds = DISSERTATION_FRAME_SECONDS;
     let settings = PlaybackSettings { seconds: DISSERTATION_SECONDS, ..PlaybackSettings::default() };
     let folder = Path::new("forerun-output").join("dominoes");

@@ -10,7 +10,7 @@ use crate::output::print;
 pub(crate) fn run(args: &ScenesArgs) -> Result<(), Failure> {
     match &args.name {
         Some(name) => {
-            let scene = builtin::scene(name).map_err(|error| Failure::Input(error.to_string()))?;
+            let scene = builtin::scene(name)?;
             print(scene.to_toml().trim_end())
         }
         None => list(),

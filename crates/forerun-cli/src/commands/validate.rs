@@ -4,7 +4,7 @@ use crate::args::ValidateArgs;
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress;
-use crate::validate::{CASES, Case};
+use crate::validate::{CASES, Case, Verdict};
 
 /// `forerun validate`.
 pub(crate) fn run(args: &ValidateArgs) -> Result<(), Failure> {
@@ -16,16 +16,19 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<(), Failure> {
     for case in chosen {
         bar.set_message(case.id);
         for figure in (case.run)() {
-            let verdict = if figure.pass { "pass" } else { "miss" };
             // Above the bar, not through it.
             bar.suspend(|| {
                 print(&format!(
-                    "| {} | {} | {:.6} | {} | {verdict} |",
-                    case.id, figure.name, figure.value, figure.limit
+                    "| {} | {} | {} | {} | {} |",
+                    case.id,
+                    figure.name,
+                    figure.digits(),
+                    figure.limit,
+                    figure.verdict.word()
                 ))
             })?;
-            figures += 1;
-            misses += usize::from(!figure.pass);
+            figures += usize::from(figure.verdict != Verdict::Reported);
+            misses += usize::from(figure.verdict == Verdict::Miss);
         }
         bar.inc(1);
     }

@@ -4,7 +4,6 @@ use forerun::dynamics::Unobserved;
 use forerun::{Clock, Scene, StepLimits, Threads, world_of};
 
 use crate::failure::Failure;
-use crate::scene_arg;
 
 /// Bodies of the smallest scene.
 const BODIES_MIN: u32 = 60;
@@ -31,13 +30,14 @@ pub(crate) fn meshes_for_this_machine(
     frame_seconds: f32,
     seconds: f64,
 ) -> Result<(Scene, Calibration), Failure> {
-    let threads = Threads::all().map_err(|error| Failure::Input(error.to_string()))?;
+    let threads = Threads::all()?;
     let frame_ms = 1000.0 * f64::from(frame_seconds);
     let wanted_ms = 1000.0 * StepLimits::default().max_s * MARGIN;
     let mut bodies = BODIES_MIN;
-    let mut best: Option<(Scene, Calibration)> = None;
+    // The largest scene that is fast enough in the mean, and the smallest that is not.
+    let (mut best, mut too_many) = (None, u32::MAX);
     for _ in 0..ROUNDS_MAX {
-        let mut scene = scene_arg::open(&format!("meshes:{bodies}"))?;
+        let mut scene = Scene::open(&format!("meshes:{bodies}"))?;
         scene.frame_seconds = frame_seconds;
         let found = measure(&scene, bodies, &threads, (seconds / f64::from(frame_seconds)) as u32)?;
         let affordable = found.mean_ms <= LOAD_MAX * frame_ms;
@@ -45,11 +45,16 @@ pub(crate) fn meshes_for_this_machine(
         if affordable || best.is_none() {
             best = Some((scene, Calibration { reached: affordable && slow_enough, ..found }));
         }
-        if slow_enough || !affordable {
+        if !affordable {
+            too_many = bodies;
+        }
+        let fewest = best.as_ref().map_or(BODIES_MIN, |(_, calibration)| calibration.bodies);
+        if slow_enough && affordable || too_many <= fewest.saturating_add(fewest / 10) {
             break;
         }
         // Cost grows a little faster than the number of bodies; steps of at most 2 keep the mean from running away.
-        bodies = (f64::from(bodies) * (1.05 * wanted_ms / found.impact_ms).clamp(1.15, 2.0)).ceil() as u32;
+        let grown = (f64::from(fewest) * (1.05 * wanted_ms / found.impact_ms).clamp(1.15, 2.0)).ceil() as u32;
+        bodies = if too_many == u32::MAX { grown } else { fewest.midpoint(too_many) };
     }
     best.ok_or_else(|| Failure::Input("meshes: not even the smallest scene could be measured".to_owned()))
 }

@@ -12,12 +12,14 @@ pub(crate) struct Outcome {
     pub(crate) playback: Playback,
     /// Height of the highest body that is not fixed, at the end. Metres.
     pub(crate) highest_m: f32,
+    /// Deepest overlap of any two bodies in any frame, where it was measured. Metres.
+    pub(crate) overlap_max_m: Option<f32>,
 }
 
 /// One row of the table: its name and what it says of a run.
 type Row = (&'static str, fn(&Outcome) -> String);
 
-const ROWS: [Row; 12] = [
+const ROWS: [Row; 13] = [
     ("pictures", |o| o.playback.report.pictures.to_string()),
     ("late pictures (over 1.5 intervals after the one before)", |o| {
         o.playback.report.late_pictures.to_string()
@@ -34,6 +36,10 @@ const ROWS: [Row; 12] = [
     ("states computed", |o| o.playback.rows.iter().map(|row| row.computed).sum::<u64>().to_string()),
     ("states computed again", |o| o.playback.report.recomputed.to_string()),
     ("centre of the highest body at the end, m", |o| format!("{:.3}", o.highest_m)),
+    ("deepest overlap in any frame, mm", |o| match o.overlap_max_m {
+        Some(overlap) => format!("{:.1}", 1000.0 * overlap),
+        None => "not measured".to_owned(),
+    }),
 ];
 
 /// The page of one experiment. `note` is a line of its own, or empty.

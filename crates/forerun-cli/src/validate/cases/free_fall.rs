@@ -1,9 +1,10 @@
 //! Free fall: a thrown ball against x = v t, y = h - g t²/2.
 
 use forerun::dynamics::Unobserved;
-use forerun::{BodyDef, Environment, Shape, Sphere, Vec3, World};
+use forerun::{BodyDef, Environment, Shape, Sphere, Vec3};
 
 use crate::validate::Figure;
+use crate::validate::lab::world;
 
 const FRAMES: u32 = 120;
 const START: Vec3 = Vec3::new(0.0, 100.0, 0.0);
@@ -14,12 +15,9 @@ const VELOCITY: Vec3 = Vec3::new(3.0, 4.0, 0.0);
 pub(crate) fn run() -> Vec<Figure> {
     let environment = Environment::default();
     let time = environment.settings.frame_seconds * FRAMES as f32;
-    let mut world = World::new(environment);
     let mut ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(START);
     ball.velocity = VELOCITY;
-    if world.add(&ball).is_err() {
-        return Vec::new();
-    }
+    let mut world = world(environment, &[ball]);
     for _ in 0..FRAMES {
         world.step(&mut Unobserved);
     }

@@ -127,7 +127,7 @@ fn emit(chosen: &[Candidate], out: &mut Vec<Manifold>) {
     let manifolds = chosen.len().div_ceil(4);
     for turn in 0..manifolds {
         let mut manifold = Manifold { normal, points: [ContactPoint::FAR_APART; 4], count: 0 };
-        for c in chosen.iter().skip(turn).step_by(manifolds) {
+        for c in chosen.iter().skip(4 * turn).take(4) {
             let point = ContactPoint { position: c.position, normal: c.normal, separation: c.separation };
             manifold.points[manifold.count as usize] = point;
             manifold.count += 1;
