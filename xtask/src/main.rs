@@ -1,29 +1,31 @@
-//! Chores of this repository: `cargo xtask tidy`.
+//! Chores of this repository: `cargo xtask tidy`, `cargo xtask golden --bless`.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 mod files;
 mod floors;
+mod golden;
 mod map;
 mod rooms;
 mod tidy;
 
 fn main() -> ExitCode {
+    // xtask lies in the root of the repository.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
-        ["tidy"] => tidy_up(),
+        ["tidy"] => tidy_up(&root),
+        ["golden", "--bless"] => golden::bless(&root),
         _ => {
-            eprintln!("usage: cargo xtask tidy");
+            eprintln!("usage: cargo xtask tidy | golden --bless");
             ExitCode::from(2)
         }
     }
 }
 
-fn tidy_up() -> ExitCode {
-    // xtask lies in the root of the repository.
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    match tidy::complaints(&root) {
+fn tidy_up(root: &Path) -> ExitCode {
+    match tidy::complaints(root) {
         Ok(complaints) if complaints.is_empty() => {
             eprintln!("tidy");
             ExitCode::SUCCESS

@@ -7,6 +7,7 @@
 //! *Architecture invariant:* the step cannot fail. It reports ([`StepReport`]); it does not return `Result`.
 
 pub mod body;
+pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
 mod lanes;
@@ -19,7 +20,8 @@ pub mod state;
 pub mod step;
 pub mod world;
 
-pub use body::{Body, BodyDef, BodyError, BodyId, BodyKind, Mass, Material, Spring};
+pub use body::{Body, BodyId, BodyKind, Material, Spring};
+pub use body_def::{BodyDef, BodyError, Mass};
 pub use settings::{Environment, EnvironmentError, StepSettings};
 pub use stage::{Observer, Stage, Unobserved};
 pub use state::BodyState;

@@ -133,6 +133,8 @@ impl StepSettings {
         {
             require((0.0..=1.0).contains(&value), field, value, "from 0 to 1")?;
         }
+        let part = self.deep_overlap_part;
+        require(part > 0.0 && part.is_finite(), "deep_overlap_part", part, "above 0")?;
         let slices = self.slices_max;
         require(slices.is_power_of_two() && slices <= 64, "slices_max", slices, "1, 2, 4, 8, 16, 32 or 64")
     }

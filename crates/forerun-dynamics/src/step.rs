@@ -33,7 +33,7 @@ impl Member<'_> {
 /// Bodies that touch nobody outside the group.
 ///
 /// Whoever builds it promises: `members` are sorted by id; `pairs` are all pairs of members with overlapping swept bounds, one of them
-/// dynamic, lower index first, sorted; `contacts` are what [`find_contacts`](crate::narrow_phase::find_contacts) gives for these pairs; and every
+/// dynamic, lower index first, sorted; `contacts` are what [`find_contacts`] gives for these pairs; and every
 /// body with a contact to a dynamic member is a member.
 #[derive(Clone, Copy, Debug)]
 pub struct Group<'a> {

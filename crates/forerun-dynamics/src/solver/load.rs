@@ -8,6 +8,7 @@ use forerun_geometry::Vec3;
 
 use super::contact_graph::{ContactGraph, Link, TOUCH_M};
 use super::prepare::combine;
+use super::pressure::{Carried, Support, fit};
 use crate::narrow_phase::Contact;
 use crate::{Environment, Member};
 
@@ -17,8 +18,6 @@ const DEAD_SPEED: f32 = 0.1;
 const UNSUPPORTED: f32 = 1e9;
 /// A support's normal must rise by at least this.
 const RISE_MIN: f32 = 0.3;
-/// Points that would have to pull are dropped and the pressure is fitted again, at most this often.
-const REFITS: usize = 4;
 
 /// Normal impulses of a contact's points in the first substep.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,39 +28,6 @@ pub(crate) struct Load {
     pub(crate) weight: [f32; 4],
     /// Which way friction pushes the second body, where the two slide: a unit vector; else zero.
     pub(crate) slide: Vec3,
-}
-
-/// A vertical load and its first moments about the body's centre.
-#[derive(Clone, Copy, Debug, Default)]
-struct Carried {
-    sum: f32,
-    moment_1: f32,
-    moment_2: f32,
-}
-
-impl Carried {
-    fn add(&mut self, force: f32, x: f32, z: f32) {
-        self.sum += force;
-        self.moment_1 += force * x;
-        self.moment_2 += force * z;
-    }
-}
-
-/// A contact point below a body.
-#[derive(Clone, Copy, Debug)]
-struct Support {
-    /// Horizontal place relative to the body's centre, where the line of the force, friction of a slide included, is as high as the centre.
-    x: f32,
-    z: f32,
-    contact: u32,
-    point: u32,
-    below: u32,
-    rise: f32,
-    /// 1 in full touch, 0 at [`TOUCH_M`].
-    weight: f32,
-    dropped: bool,
-    total: f32,
-    still: f32,
 }
 
 /// The vertical and two horizontal directions.
@@ -311,50 +277,5 @@ fn shrink(speed: f32) -> f32 {
         speed + DEAD_SPEED
     } else {
         0.0
-    }
-}
-
-/// Spreads the load over the supports as an affine function of the place, without pulling.
-fn fit(supports: &mut [Support], total: &Carried, still: &Carried, ridge: f32) {
-    for round in 0..REFITS {
-        let active = || supports.iter().filter(|s| !s.dropped);
-        let weight: f32 = active().map(|s| s.weight).sum();
-        let cx = active().map(|s| s.x * s.weight).sum::<f32>() / weight;
-        let cz = active().map(|s| s.z * s.weight).sum::<f32>() / weight;
-        let (mut xx, mut xz, mut zz) = (ridge * weight, 0.0, ridge * weight);
-        for s in active() {
-            let (x, z) = (s.x - cx, s.z - cz);
-            xx += s.weight * x * x;
-            xz += s.weight * x * z;
-            zz += s.weight * z * z;
-        }
-        let inverse = 1.0 / (xx * zz - xz * xz);
-        let slopes = |load: &Carried| {
-            let (m1, m2) = (load.moment_1 - load.sum * cx, load.moment_2 - load.sum * cz);
-            ((m1 * zz - m2 * xz) * inverse, (m2 * xx - m1 * xz) * inverse)
-        };
-        let (tx, tz) = slopes(total);
-        let (sx, sz) = slopes(still);
-        let mut pulls = false;
-        for s in supports.iter_mut().filter(|s| !s.dropped) {
-            let (x, z) = (s.x - cx, s.z - cz);
-            s.still = s.weight * (still.sum / weight + x * sx + z * sz);
-            s.total = s.weight * (total.sum / weight + x * tx + z * tz);
-            if s.total < 0.0 {
-                s.dropped = true;
-                pulls = true;
-            }
-        }
-        if !pulls || round + 1 == REFITS || supports.iter().all(|s| s.dropped) {
-            break;
-        }
-    }
-    let kept = || supports.iter().filter(|s| !s.dropped);
-    let scale = |wanted: f32, got: f32| if got > 0.0 { wanted / got } else { 0.0 };
-    let of_total = scale(total.sum, kept().map(|s| s.total).sum());
-    let of_still = scale(still.sum, kept().map(|s| s.still.max(0.0)).sum());
-    for s in supports.iter_mut() {
-        s.total *= of_total;
-        s.still = s.still.max(0.0) * of_still;
     }
 }

@@ -14,6 +14,7 @@ mod load;
 mod overlap;
 mod positions;
 mod prepare;
+mod pressure;
 mod rotation;
 mod shock;
 mod spring;
