@@ -144,6 +144,9 @@ pub(crate) struct BenchArgs {
     /// Threads of the physics
     #[arg(long, default_value_t = 1, value_parser = threads())]
     pub(crate) threads: u16,
+    /// Let nothing come to rest, to compare with engines whose sleep is off
+    #[arg(long)]
+    pub(crate) awake: bool,
     /// Print the result as JSON and nothing else
     #[arg(long)]
     pub(crate) json: bool,

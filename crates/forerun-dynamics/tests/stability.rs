@@ -5,7 +5,7 @@ mod common;
 use common::{
     Random, UNIT, cuboid, ground, pyramid, run, tilted_gravity, turned, with_density, with_material, world_of,
 };
-use forerun_dynamics::{Environment, World};
+use forerun_dynamics::{Environment, Material, World};
 use forerun_geometry::Vec3;
 
 /// How far any dynamic body sank, and moved sideways.
@@ -96,4 +96,28 @@ fn friction_holds_up_to_its_angle() {
             "friction {friction}: {x} m, expected {expected} m"
         );
     }
+}
+
+#[test]
+fn static_friction_holds_what_kinetic_friction_would_not() {
+    // tan 26.565 degrees = 0.5, between the two coefficients.
+    let run_from = |speed: f32| {
+        let material = Material { friction: 0.4, static_friction: 0.6, restitution: 0.0 };
+        let mut block = cuboid(UNIT, Vec3::new(0.0, 0.5, 0.0));
+        block.material = material;
+        block.velocity.x = speed;
+        let mut floor = ground();
+        floor.material = material;
+        let mut world = World::new(Environment { gravity: tilted_gravity(26.565), ..Environment::default() });
+        for def in [floor, block] {
+            world.add(&def).expect("the definition is possible");
+        }
+        run(&mut world, 120);
+        world.states()[1].position.x
+    };
+    let held = run_from(0.0);
+    assert!(held.abs() < 1e-3, "it slipped by {held} m");
+    // From 1 m/s: x = t + (g sin - 0.4 g cos) t² / 2 at t = 2 s.
+    let (slid, expected) = (run_from(1.0), 2.0 + 0.5 * 9.81 * (0.447_21 - 0.4 * 0.894_43) * 4.0);
+    assert!((slid / expected - 1.0).abs() < 0.02, "it slid {slid} m, expected {expected} m");
 }

@@ -22,7 +22,10 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let count = NonZeroU16::new(args.threads).unwrap_or(NonZeroU16::MIN);
     let threads = Threads::exactly(count)?;
     // All scenes are opened first: a misspelt name is not to cost the measurements before it.
-    let scenes = args.scenes.iter().map(|typed| Scene::open(typed)).collect::<Result<Vec<_>, _>>()?;
+    let mut scenes = args.scenes.iter().map(|typed| Scene::open(typed)).collect::<Result<Vec<_>, _>>()?;
+    if args.awake {
+        scenes.iter_mut().for_each(|scene| scene.settings.rest_seconds = Some(0.0));
+    }
     let mut measured = Vec::new();
     for (typed, scene) in args.scenes.iter().zip(&scenes) {
         let bar = progress::bar(u64::from(args.frames), typed);
