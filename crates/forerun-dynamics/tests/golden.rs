@@ -81,7 +81,7 @@ fn heap(count: usize, shape: impl Fn(&mut Random, usize) -> Shape) -> Vec<BodyDe
 #[test]
 fn hulls_and_cylinders() {
     let shape = |r: &mut Random, i: usize| {
-        if i % 2 == 0 {
+        if i.is_multiple_of(2) {
             return Shape::cylinder(r.between(0.2, 0.4), r.between(0.2, 0.4)).expect("sizes are above 0");
         }
         let mut number = || r.between(-0.4, 0.4);
