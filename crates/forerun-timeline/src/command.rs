@@ -138,48 +138,51 @@ impl Change {
             Change::SetGravity { .. } => None,
         }
     }
-}
 
-/// Checks the numbers of a change; definitions of bodies are checked where bodies are made.
-pub(crate) fn check_numbers(change: &Change) -> Result<(), CommandError> {
-    match change {
-        Change::Add { .. } | Change::Remove { .. } | Change::Release { .. } | Change::SetKind { .. } => {
-            Ok(())
+    /// Whether the numbers of the change are possible; definitions of bodies are checked where bodies are made.
+    ///
+    /// # Errors
+    /// The first number that is not finite or out of its range.
+    pub fn check_numbers(&self) -> Result<(), CommandError> {
+        match self {
+            Change::Add { .. } | Change::Remove { .. } | Change::Release { .. } | Change::SetKind { .. } => {
+                Ok(())
+            }
+            Change::Move { pose, .. } => {
+                check_vector("pose.position", pose.position)?;
+                let q = pose.rotation;
+                let unit = q.is_finite() && (q.length_squared() - 1.0).abs() < 1e-3;
+                check("pose.rotation", unit, || format!("must be a unit quaternion (x, y, z, w), is {q}"))
+            }
+            Change::Push { impulse, at_point, .. } => {
+                check_vector("impulse", *impulse)?;
+                at_point.map_or(Ok(()), |point| check_vector("at_point", point))
+            }
+            Change::SetVelocity { velocity, angular_velocity, .. } => {
+                check_vector("velocity", *velocity)?;
+                check_vector("angular_velocity", *angular_velocity)
+            }
+            Change::Hold { spring, .. } => {
+                check_vector("spring.anchor", spring.anchor)?;
+                check_vector("spring.target", spring.target)?;
+                let Spring { frequency_hz, damping_ratio, .. } = *spring;
+                check("spring.frequency_hz", frequency_hz > 0.0 && frequency_hz.is_finite(), || {
+                    format!("must be above 0 Hz, is {frequency_hz}")
+                })?;
+                check("spring.damping_ratio", damping_ratio >= 0.0 && damping_ratio.is_finite(), || {
+                    format!("must be 0 or more, is {damping_ratio}")
+                })
+            }
+            Change::SetMaterial { material, .. } => check_material(material),
+            Change::SetForce { force, torque, .. } => {
+                check_vector("force", *force)?;
+                check_vector("torque", *torque)
+            }
+            Change::SetGravityScale { scale, .. } => {
+                check("scale", scale.is_finite(), || format!("must be a finite number, is {scale}"))
+            }
+            Change::SetGravity { gravity } => check_vector("gravity", *gravity),
         }
-        Change::Move { pose, .. } => {
-            check_vector("pose.position", pose.position)?;
-            let q = pose.rotation;
-            let unit = q.is_finite() && (q.length_squared() - 1.0).abs() < 1e-3;
-            check("pose.rotation", unit, || format!("must be a unit quaternion (x, y, z, w), is {q}"))
-        }
-        Change::Push { impulse, at_point, .. } => {
-            check_vector("impulse", *impulse)?;
-            at_point.map_or(Ok(()), |point| check_vector("at_point", point))
-        }
-        Change::SetVelocity { velocity, angular_velocity, .. } => {
-            check_vector("velocity", *velocity)?;
-            check_vector("angular_velocity", *angular_velocity)
-        }
-        Change::Hold { spring, .. } => {
-            check_vector("spring.anchor", spring.anchor)?;
-            check_vector("spring.target", spring.target)?;
-            let Spring { frequency_hz, damping_ratio, .. } = *spring;
-            check("spring.frequency_hz", frequency_hz > 0.0 && frequency_hz.is_finite(), || {
-                format!("must be above 0 Hz, is {frequency_hz}")
-            })?;
-            check("spring.damping_ratio", damping_ratio >= 0.0 && damping_ratio.is_finite(), || {
-                format!("must be 0 or more, is {damping_ratio}")
-            })
-        }
-        Change::SetMaterial { material, .. } => check_material(material),
-        Change::SetForce { force, torque, .. } => {
-            check_vector("force", *force)?;
-            check_vector("torque", *torque)
-        }
-        Change::SetGravityScale { scale, .. } => {
-            check("scale", scale.is_finite(), || format!("must be a finite number, is {scale}"))
-        }
-        Change::SetGravity { gravity } => check_vector("gravity", *gravity),
     }
 }
 

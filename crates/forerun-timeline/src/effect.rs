@@ -5,7 +5,7 @@ use std::sync::Arc;
 use forerun_dynamics::{Body, BodyDef, BodyKind, BodyState, Material, Spring};
 use forerun_geometry::Vec3;
 
-use crate::command::Change;
+use crate::command::{Change, CommandError};
 
 /// The command did nothing: the body is not there, or it cannot become what is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,9 +22,31 @@ pub(crate) fn body_after(
         return made.map(|(body, _)| Some(Arc::new(body))).ok_or(Ignored);
     }
     let body = body.ok_or(Ignored)?;
-    let mut next = Body::clone(body);
     match change {
-        Change::Remove { .. } => return Ok(None),
+        Change::Remove { .. } => Ok(None),
+        Change::SetKind { kind, .. } => {
+            let def = BodyDef { kind: *kind, ..def.ok_or(Ignored)?.clone() };
+            let (made, _) = Body::new(&def).map_err(|_| Ignored)?;
+            Ok(Some(Arc::new(Body {
+                kind: made.kind,
+                inverse_mass: made.inverse_mass,
+                inverse_inertia: made.inverse_inertia,
+                ..Body::clone(body)
+            })))
+        }
+        // The same memory, so that a look at the pointer tells that nothing changed.
+        Change::Move { .. }
+        | Change::Push { .. }
+        | Change::SetVelocity { .. }
+        | Change::SetGravity { .. } => Ok(Some(Arc::clone(body))),
+        _ => Ok(Some(Arc::new(with_properties(body, change)))),
+    }
+}
+
+/// The body with what a change sets: spring, material, force, factor on gravity.
+fn with_properties(body: &Body, change: &Change) -> Body {
+    let mut next = body.clone();
+    match change {
         // Adding +0 makes -0 positive: numbers that are equal have equal bits, so that equal bodies can stand for each other.
         Change::Hold { spring, .. } => {
             let Spring { anchor, target, frequency_hz, damping_ratio } = *spring;
@@ -48,20 +70,38 @@ pub(crate) fn body_after(
             (next.force, next.torque) = (*force + Vec3::ZERO, *torque + Vec3::ZERO);
         }
         Change::SetGravityScale { scale, .. } => next.gravity_scale = *scale + 0.0,
-        Change::SetKind { kind, .. } => {
-            let def = BodyDef { kind: *kind, ..def.ok_or(Ignored)?.clone() };
-            let (made, _) = Body::new(&def).map_err(|_| Ignored)?;
-            next.kind = made.kind;
-            next.inverse_mass = made.inverse_mass;
-            next.inverse_inertia = made.inverse_inertia;
-        }
         Change::Add { .. }
+        | Change::Remove { .. }
         | Change::Move { .. }
         | Change::Push { .. }
         | Change::SetVelocity { .. }
-        | Change::SetGravity { .. } => return Ok(Some(Arc::clone(body))),
+        | Change::SetKind { .. }
+        | Change::SetGravity { .. } => {}
     }
-    Ok(Some(Arc::new(next)))
+    next
+}
+
+impl Change {
+    /// A body and its state after the change, for who keeps no timeline. Nothing is different after `Add`, `Remove`, `SetKind` and
+    /// `SetGravity`: they are not about the properties of one body that is there.
+    ///
+    /// # Errors
+    /// When a number of the change is out of its range, or one of the new state would not be finite.
+    pub fn applied_to(&self, body: &Body, state: &BodyState) -> Result<(Body, BodyState), CommandError> {
+        self.check_numbers()?;
+        if matches!(
+            self,
+            Change::Add { .. } | Change::Remove { .. } | Change::SetKind { .. } | Change::SetGravity { .. }
+        ) {
+            return Ok((body.clone(), *state));
+        }
+        let body = with_properties(body, self);
+        let state = state_after(&body, state, self).map_err(|Ignored| CommandError::Number {
+            field: "change",
+            message: "is so large that the state would not be finite".to_owned(),
+        })?;
+        Ok((body, state))
+    }
 }
 
 /// The state of a body after a change; `body` is what [`body_after`] gave.

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use forerun_dynamics::{Body, BodyDef, BodyId, Environment};
 
-use crate::command::check_numbers;
 use crate::stale::same_body;
 use crate::timeline::{Counters, Timeline};
 use crate::{Change, Command, CommandError, CommandKey, Frame};
@@ -68,7 +67,7 @@ impl Timeline {
         if self.log.contains(key) {
             return Err(CommandError::DuplicateKey(*key));
         }
-        check_numbers(change)?;
+        change.check_numbers()?;
         let names = self.definitions.names();
         match change {
             Change::Add { body, def } => {

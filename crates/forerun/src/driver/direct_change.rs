@@ -2,18 +2,18 @@
 
 use std::fmt;
 
-use forerun_dynamics::{Body, BodyError, BodyState, World};
-use forerun_timeline::Change;
+use forerun_dynamics::World;
+use forerun_timeline::{Change, CommandError};
 
-use crate::{BodyId, Vec3};
+use crate::BodyId;
 
 /// Why a world cannot be changed so.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChangeError {
     /// There is no such body.
     UnknownBody(BodyId),
-    /// The body to be added is not possible.
-    Body(BodyError),
+    /// A number of the change, or the body to be added, is not possible.
+    Refused(CommandError),
     /// A plain world neither removes bodies nor changes their kind.
     NeedsTimeline(&'static str),
 }
@@ -22,7 +22,7 @@ impl fmt::Display for ChangeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ChangeError::UnknownBody(body) => write!(f, "there is no body {}", body.0),
-            ChangeError::Body(error) => write!(f, "{error}"),
+            ChangeError::Refused(error) => write!(f, "{error}"),
             ChangeError::NeedsTimeline(what) => {
                 write!(f, "the coupled driver cannot {what}: use the decoupled one")
             }
@@ -39,14 +39,14 @@ pub(super) fn apply(world: &mut World, change: &Change) -> Result<(), ChangeErro
             if body.0 as usize != world.bodies().len() {
                 return Err(ChangeError::UnknownBody(*body));
             }
-            world.add(def).map(|_| ()).map_err(ChangeError::Body)
+            world.add(def).map_err(CommandError::Body).map_err(ChangeError::Refused)?;
         }
-        Change::Remove { .. } => Err(ChangeError::NeedsTimeline("remove a body")),
-        Change::SetKind { .. } => Err(ChangeError::NeedsTimeline("change the kind of a body")),
+        Change::Remove { .. } => return Err(ChangeError::NeedsTimeline("remove a body")),
+        Change::SetKind { .. } => return Err(ChangeError::NeedsTimeline("change the kind of a body")),
         Change::SetGravity { gravity } => {
+            change.check_numbers().map_err(ChangeError::Refused)?;
             world.environment.gravity = *gravity;
             world.states_mut().iter_mut().for_each(|state| state.rest = 0);
-            Ok(())
         }
         Change::Move { body, .. }
         | Change::Push { body, .. }
@@ -55,50 +55,26 @@ pub(super) fn apply(world: &mut World, change: &Change) -> Result<(), ChangeErro
         | Change::Release { body }
         | Change::SetMaterial { body, .. }
         | Change::SetForce { body, .. }
-        | Change::SetGravityScale { body, .. } => change_body(world, *body, change),
+        | Change::SetGravityScale { body, .. } => change_body(world, *body, change)?,
     }
+    Ok(())
 }
 
 fn change_body(world: &mut World, id: BodyId, change: &Change) -> Result<(), ChangeError> {
     let place = id.0 as usize;
-    let Some(mut state) = world.states().get(place).copied() else {
+    let Some((body, state)) = world.bodies().get(place).zip(world.states().get(place)) else {
         return Err(ChangeError::UnknownBody(id));
     };
-    let body = &mut world.bodies_mut()[place];
-    match change {
-        Change::Move { pose, .. } => {
-            state = body.state_at(pose, state.velocity, state.angular_velocity);
-        }
-        Change::Push { impulse, at_point, .. } => push(body, &mut state, *impulse, *at_point),
-        Change::SetVelocity { velocity, angular_velocity, .. } => {
-            state = body.state_at(&body.own_pose(&state), *velocity, *angular_velocity);
-        }
-        Change::Hold { spring, .. } => body.spring = Some(*spring),
-        Change::Release { .. } => body.spring = None,
-        Change::SetMaterial { material, .. } => body.material = *material,
-        Change::SetForce { force, torque, .. } => (body.force, body.torque) = (*force, *torque),
-        Change::SetGravityScale { scale, .. } => body.gravity_scale = *scale,
-        Change::Add { .. } | Change::Remove { .. } | Change::SetKind { .. } | Change::SetGravity { .. } => {}
-    }
-    state.rest = 0;
-    world.states_mut()[place] = state.canonical();
+    let (body, state) = change.applied_to(body, state).map_err(ChangeError::Refused)?;
+    world.bodies_mut()[place] = body;
+    world.states_mut()[place] = state;
     Ok(())
-}
-
-/// An impulse J at a point r from the centre: v += J/m, w += I⁻¹ (r × J). Bodies that nothing moves have inverse masses of 0.
-fn push(body: &Body, state: &mut BodyState, impulse: Vec3, at_point: Option<Vec3>) {
-    state.velocity += impulse * body.inverse_mass;
-    if let Some(point) = at_point {
-        let torque = (point - state.position).cross(impulse);
-        let local = state.rotation.conjugate() * torque;
-        state.angular_velocity += state.rotation * (local * body.inverse_inertia);
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BodyDef, Cuboid, Environment, Shape};
+    use crate::{BodyDef, Cuboid, Environment, Shape, Vec3};
 
     fn world() -> World {
         let mut world = World::new(Environment::default());
@@ -123,9 +99,16 @@ mod tests {
     fn what_a_world_cannot_do_is_refused_and_changes_nothing() {
         let mut world = world();
         let before = world.states().to_vec();
-        for change in [Change::Remove { body: BodyId(0) }, Change::Release { body: BodyId(7) }] {
+        for change in [
+            Change::Remove { body: BodyId(0) },
+            Change::Release { body: BodyId(7) },
+            Change::SetGravity { gravity: Vec3::NAN },
+            Change::Push { body: BodyId(0), impulse: Vec3::X * f32::INFINITY, at_point: None },
+            Change::Push { body: BodyId(0), impulse: Vec3::Y * 3e38, at_point: Some(Vec3::X * 1e9) },
+        ] {
             assert!(apply(&mut world, &change).is_err());
         }
         assert_eq!(world.states(), before);
+        assert_eq!(world.environment, Environment::default());
     }
 }
