@@ -29,7 +29,8 @@ const fn miss(case: &'static str, figure: &'static str, value: f64, cause: &'sta
 
 const TIPS: &str = "the column of two cubes is exactly at its tipping point: an unstable equilibrium";
 const FACETS: &str = "a ball of 2420 facets loses spin at every edge it rolls over; how much of the miss that explains is open";
-const FACETS_BOUNCE: &str = "the points that are kept of a facet and its neighbours do not lie evenly about the lowest one";
+const FACETS_BOUNCE: &str =
+    "the points that are kept of a facet and its neighbours do not lie evenly about the lowest one";
 const ROUNDS: &str = "30000 roundings of the stored state next to a separatrix";
 
 /// All of them, in the order of the cases.
