@@ -22,7 +22,7 @@ pub mod world;
 
 pub use body::{Body, BodyId, BodyKind, Material, Spring};
 pub use body_def::{BodyDef, BodyError, Mass};
-pub use settings::{Environment, EnvironmentError, StepSettings};
+pub use settings::{Environment, EnvironmentError, ShockPropagation, StepSettings};
 pub use stage::{Observer, Stage, Unobserved};
 pub use state::BodyState;
 pub use step::{Group, Member, StepReport};

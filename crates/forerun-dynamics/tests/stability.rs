@@ -121,3 +121,13 @@ fn static_friction_holds_what_kinetic_friction_would_not() {
     let (slid, expected) = (run_from(1.0), 2.0 + 0.5 * 9.81 * (0.447_21 - 0.4 * 0.894_43) * 4.0);
     assert!((slid / expected - 1.0).abs() < 0.02, "it slid {slid} m, expected {expected} m");
 }
+
+#[test]
+fn classic_shock_propagation_holds_an_exact_pyramid() {
+    let mut world = world_of(&pyramid(10));
+    world.environment.settings.shock_propagation = forerun_dynamics::ShockPropagation::Classic;
+    let start: Vec<Vec3> = world.states().iter().map(|s| s.position).collect();
+    run(&mut world, 200);
+    let (sank, drifted) = settled(&world, &start);
+    assert!(sank < 1e-3 && drifted < 1e-3, "sank by {sank} m, drifted by {drifted} m");
+}

@@ -30,6 +30,6 @@ pub use error::{Place, SceneError};
 pub use mesh::MeshEntry;
 pub use rotation::RotationEntry;
 pub use scene::Scene;
-pub use settings::SettingsEntry;
+pub use settings::{SettingsEntry, ShockEntry};
 pub use shape::{PartEntry, ShapeEntry};
 pub use source::Format;

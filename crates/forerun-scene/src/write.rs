@@ -81,10 +81,12 @@ impl Writer {
     fn settings(&mut self, s: &SettingsEntry) {
         self.optional("substeps", &s.substeps);
         self.optional("first_sweeps", &s.first_sweeps);
+        self.optional("first_sweeps_hard", &s.first_sweeps_hard);
         self.optional("contact_margin_m", &s.contact_margin_m);
         self.optional("overlap_allowed_m", &s.overlap_allowed_m);
         self.optional("overlap_recovery", &s.overlap_recovery);
         self.optional("recovery_speed_max", &s.recovery_speed_max);
+        self.optional("shock_propagation", &s.shock_propagation);
         self.optional("shock_yield", &s.shock_yield);
         self.optional("rest_speed", &s.rest_speed);
         self.optional("rest_seconds", &s.rest_seconds);

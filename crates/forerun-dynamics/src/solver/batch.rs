@@ -12,13 +12,13 @@ use super::islands::Islands;
 use super::load::{Load, LoadPass, Strain};
 use super::positions::{Ending, IslandsAt, moved, settle};
 use super::prepare::{Source, prepare};
-use super::shock::propagate_shock;
+use super::shock::{propagate_classic, propagate_shock};
 use super::sweep::{relax, sweep};
 use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
 use crate::lanes::{Portable, Row};
 use crate::narrow_phase::Contact;
-use crate::{BodyState, Environment, Member};
+use crate::{BodyState, Environment, Member, ShockPropagation};
 
 /// An island is hard when the load pass leaves more than this part of its weight to the sweeps: stacks and pyramids leave none, a heap most of it.
 const HARD_PART: f64 = 0.1;
@@ -178,6 +178,9 @@ impl<'a> Batch<'a> {
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);
             relax(blocks, &mut bodies.velocities, &bodies.displacements, h, spared);
+            if settings.shock_propagation == ShockPropagation::Classic {
+                propagate_classic(blocks, &mut bodies.velocities, &bodies.displacements, h);
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! Shock propagation: remaining overlap is pushed out level by level, the lower body moving less than its mass says.
 //!
-//! The classic form (Guendelman et al. 2003, section 8; dissertation 2.4.7) gives what is below infinite mass and acts on velocities; measured, it makes
-//! wide pyramids explode. This one acts on positions alone, so that it adds no velocity.
+//! The classic form (Guendelman et al. 2003, section 8; dissertation 2.4.7) gives what is below infinite mass and acts on velocities; it is here for
+//! comparison, see [`ShockPropagation`](crate::ShockPropagation). The usual one acts on positions alone, so that it adds no velocity.
 
 use super::blocks::Block;
 use super::sweep::{Jacobian, Sides};
@@ -30,6 +30,47 @@ fn propagate_lanes<F: Lanes>(
     let most = F::splat(push_max);
     for block in blocks {
         push_out(block, displacements, part, allowed, most);
+    }
+}
+
+dispatched! {
+    /// The classic form: one pass over the velocities, by rising level, as if the lower body of every contact had infinite mass.
+    pub(crate) fn propagate_classic(
+        blocks: &mut [Block],
+        velocities: &mut [Row],
+        displacements: &[Row],
+        substep_seconds: f32,
+    ) => classic_lanes
+}
+
+#[inline(always)]
+fn classic_lanes<F: Lanes>(
+    blocks: &mut [Block<F>],
+    velocities: &mut [Row],
+    displacements: &[Row],
+    substep_seconds: f32,
+) {
+    let per_second = F::splat(1.0 / substep_seconds);
+    for block in blocks {
+        // The side that yields less than the other is the lower one.
+        let lower = |own: F, other: F| own.lt(other).select(F::zero(), F::one());
+        let on_first = block.first_answers * lower(block.first_yields, block.second_yields);
+        let on_second = block.second_answers * lower(block.second_yields, block.first_yields);
+        let mut v = Sides::gather(block, velocities);
+        let moved: Sides<F> = Sides::gather(block, displacements);
+        for point in &block.points {
+            let row = point.jacobian();
+            let gap = (point.separation + moved.along(block, &row)).max(F::zero());
+            let lacking = -(v.along(block, &row) + gap * per_second);
+            let (sa, sb) = (block.first_scale, block.second_scale);
+            let k = on_first * (sa * sa + row.first.dot(row.first))
+                + on_second * (sb * sb + row.second.dot(row.second))
+                + F::splat(1e-12);
+            let is_point = point.inverse_k.gt(F::zero());
+            let impulse = is_point.select((lacking / k).max(F::zero()), F::zero());
+            v.push(block, &row, (impulse * on_first, impulse * on_second));
+        }
+        v.scatter(block, velocities);
     }
 }
 
