@@ -115,6 +115,7 @@ impl Decoupled {
         let snapshot = timeline.snapshot();
         let frame_seconds = f64::from(snapshot.frame_seconds());
         let next_body = timeline.reserve_body();
+        let next_sequence = timeline.next_sequence();
         let reach = Reach::new(timeline.settings().lookahead);
         let shared = Arc::new(Shared::new(&timeline));
         let physics = physics::Physics {
@@ -137,7 +138,7 @@ impl Decoupled {
             frame_seconds,
             time_s: 0.0,
             next_body,
-            next_sequence: 0,
+            next_sequence,
         })
     }
 
@@ -177,7 +178,7 @@ impl Decoupled {
         let key =
             CommandKey { frame: self.displayed_frame().next(), source: 0, sequence: self.next_sequence };
         self.submit(Command { key, change })?;
-        self.next_sequence += 1;
+        self.next_sequence = self.next_sequence.saturating_add(1);
         Ok(key)
     }
 

@@ -158,6 +158,20 @@ fn a_command_that_the_timeline_refuses_comes_back_with_the_reason() {
 }
 
 #[test]
+fn local_changes_count_on_after_the_commands_that_the_timeline_had() {
+    let mut timeline = timeline();
+    let staged = timeline.change(Frame(1), Change::Release { body: BodyId(1) }).expect("a plain change");
+    let mut driver = Decoupled::start(timeline, settings()).expect("a thread");
+    let key = driver.change(Change::Release { body: BodyId(2) }).expect("the queue has room");
+    assert_eq!((key.frame, key.sequence), (staged.frame, staged.sequence + 1));
+    assert!(eventually(|| {
+        driver.show(0.0).expect("physics lives");
+        full(&driver)
+    }));
+    assert_eq!(driver.refusals(), []);
+}
+
+#[test]
 fn added_bodies_get_their_names_without_asking_the_physics() {
     let mut driver = slow(0);
     let ball = || BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::new(-20.0, 3.0, 0.0));
