@@ -133,6 +133,17 @@ fn past_the_horizon_the_last_state_is_held_and_commands_are_taken() {
 }
 
 #[test]
+fn a_queue_that_cannot_be_is_refused_at_the_start() {
+    for command_capacity in [0, usize::MAX] {
+        let refused =
+            Decoupled::start(timeline(), DecoupledSettings { command_capacity, ..settings() }).err();
+        let Some(DriverError::Setting { field, message }) = refused else { panic!("{refused:?}") };
+        assert_eq!(field, "command_capacity");
+        assert_eq!(message, format!("must be from 1 to 65536, is {command_capacity}"));
+    }
+}
+
+#[test]
 fn a_full_queue_pushes_back_at_once_and_takes_commands_again_later() {
     let slow_down = Duration::from_millis(100);
     let mut driver =
