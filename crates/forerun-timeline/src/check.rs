@@ -83,17 +83,17 @@ pub struct CheckReport {
 /// Makes random edits on a timeline of the bodies and compares it with full simulations. Calls `at` at the moments of each edit.
 ///
 /// # Errors
-/// When the environment or a body is not possible.
+/// When the environment or a body is not possible, or a full run refuses a command that the timeline accepted: then nothing is shown.
 pub fn check(
     bodies: &[BodyDef],
     environment: Environment,
     settings: &CheckSettings,
     at: &mut dyn FnMut(CheckMoment),
-) -> Result<CheckReport, TimelineError> {
+) -> Result<CheckReport, FullRunError> {
     let all = TimelineSettings { lookahead: settings.frames, past: settings.frames, area_m: None };
-    let mut timeline = Timeline::new(bodies, environment, all)?;
+    let mut timeline = Timeline::new(bodies, environment, all).map_err(FullRunError::Start)?;
     timeline.mutate(settings.mutation);
-    let mut reference = Timeline::new(bodies, environment, all)?;
+    let mut reference = Timeline::new(bodies, environment, all).map_err(FullRunError::Start)?;
     reference.recompute_all();
     run(&mut timeline);
     run(&mut reference);
@@ -116,17 +116,14 @@ pub fn check(
             reference.reserve_body();
         }
         at(CheckMoment::FullBegins);
-        let accepted = reference.submit(Command { key, change: change.clone() });
+        reference.submit(Command { key, change: change.clone() }).map_err(FullRunError::Command)?;
         run(&mut reference);
         at(CheckMoment::FullEnds);
-        debug_assert!(accepted.is_ok(), "{accepted:?}");
         commands.push(Command { key, change });
         report.add(&timeline, &reference);
     }
     // The reference was edited too: compare with one that knew everything from the start.
-    if let Ok(fresh) = full_run(bodies, commands, environment, settings.frames) {
-        report.add(&timeline, &fresh);
-    }
+    report.add_fresh(&timeline, full_run(bodies, commands, environment, settings.frames))?;
     let edits = timeline.stats().edits;
     (report.affected, report.recomputed) = (edits.affected, edits.recomputed);
     report.full = reference.stats().edits.recomputed;
@@ -138,6 +135,16 @@ impl CheckReport {
         let (count, first) = mismatches(timeline, reference);
         self.mismatches += count;
         self.first_mismatch = self.first_mismatch.or(first);
+    }
+
+    /// A comparison that cannot be made is no agreement.
+    fn add_fresh(
+        &mut self,
+        timeline: &Timeline,
+        fresh: Result<Timeline, FullRunError>,
+    ) -> Result<(), FullRunError> {
+        self.add(timeline, &fresh?);
+        Ok(())
     }
 }
 
@@ -154,7 +161,7 @@ impl fmt::Display for FullRunError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             FullRunError::Start(error) => write!(f, "{error}"),
-            FullRunError::Command(error) => write!(f, "{error}"),
+            FullRunError::Command(error) => write!(f, "a full run refuses a command: {error}"),
         }
     }
 }
@@ -325,5 +332,31 @@ pub fn random_change(timeline: &mut Timeline, frame: Frame, random: &mut Random)
             Change::SetKind { body, kind: kinds[random.below(3) as usize] }
         }
         _ => Change::SetGravity { gravity: Vec3::new(0.0, -9.81, 0.0) + random.vector() },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CommandKey;
+    use forerun_geometry::shape::{Shape, Sphere};
+
+    #[test]
+    fn a_full_run_that_refuses_a_command_is_an_error_and_no_agreement() {
+        let bodies = [BodyDef::new(Shape::Sphere(Sphere { radius: 0.5 }))];
+        let timeline = full_run(&bodies, [], Environment::default(), 5).unwrap();
+        let key = CommandKey { frame: Frame(2), source: 0, sequence: 0 };
+        let unknown = Command { key, change: Change::Release { body: BodyId(9) } };
+        let mut report = CheckReport::default();
+        let refused = full_run(&bodies, [unknown], Environment::default(), 5);
+        assert_eq!(
+            report.add_fresh(&timeline, refused),
+            Err(FullRunError::Command(CommandError::UnknownBody(BodyId(9))))
+        );
+        // The same with a run that fell differently is seen.
+        let push = Change::Push { body: BodyId(0), impulse: Vec3::X, at_point: None };
+        let pushed = full_run(&bodies, [Command { key, change: push }], Environment::default(), 5);
+        report.add_fresh(&timeline, pushed).unwrap();
+        assert_eq!(report.mismatches, 4);
     }
 }
