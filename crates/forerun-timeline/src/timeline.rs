@@ -246,6 +246,12 @@ impl Timeline {
         self.definitions.names()
     }
 
+    /// The sequence number of the local user's (source 0) next command: above that of all of them accepted so far.
+    #[must_use]
+    pub fn next_sequence(&self) -> u64 {
+        self.next_sequence
+    }
+
     /// The accepted commands that act after the oldest frame, in the order in which they act.
     pub fn commands(&self) -> impl Iterator<Item = (&CommandKey, &Change)> {
         self.log.iter()

@@ -6,6 +6,7 @@ mod clock;
 mod coupled;
 mod decoupled;
 mod direct_change;
+mod driver_error;
 mod frame_notes;
 mod physics;
 mod reach;
@@ -13,7 +14,8 @@ mod threads;
 
 pub use clock::Clock;
 pub use coupled::{Coupled, StepLimits};
-pub use decoupled::{Decoupled, DecoupledSettings, DriverError, Picture};
+pub use decoupled::{Decoupled, DecoupledSettings, Picture};
 pub use direct_change::ChangeError;
+pub use driver_error::DriverError;
 pub use frame_notes::FrameNote;
 pub use threads::{Threads, ThreadsError};

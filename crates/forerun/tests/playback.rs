@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use forerun::{
-    Clock, DriverKind, Playback, PlaybackSettings, Scene, Threads, TimelineSettings, play, timeline_of,
+    Clock, DriverKind, Playback, PlaybackError, PlaybackSettings, Scene, Threads, TimelineSettings, play,
+    timeline_of,
 };
 
 const FPS: f64 = 30.0;
@@ -36,6 +37,24 @@ fn pictures_come_at_equal_intervals_when_nothing_is_late() {
         assert!(row.time_display_s <= row.time_real_s, "{row:?}");
     }
     assert_eq!(playback.last_poses.len(), 4);
+}
+
+#[test]
+fn impossible_lengths_and_rates_are_refused() {
+    let scene = Scene::open("stack:1").expect("a built-in scene");
+    let refused = |seconds: f64, fps: f64, at_fault: &str| {
+        let settings = PlaybackSettings { seconds, fps, ..PlaybackSettings::default() };
+        let error = play(&scene, &settings, &Clock::by_hand(), &mut |_| {}).err();
+        assert!(
+            matches!(&error, Some(PlaybackError::Setting { field, .. }) if *field == at_fault),
+            "{error:?}"
+        );
+    };
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
+        refused(bad, FPS, "seconds");
+        refused(1.0, bad, "fps");
+    }
+    refused(1.0, 1e-300, "fps");
 }
 
 #[test]

@@ -8,16 +8,32 @@ use std::time::Duration;
 use forerun_timeline::Change;
 
 use super::direct_change::{ChangeError, apply};
+use super::driver_error::DriverError;
 use crate::dynamics::{StepReport, Unobserved, World};
 use crate::{Clock, Threads};
 
 /// Between which lengths a time step is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepLimits {
-    /// Shortest step. Seconds, above 0.
+    /// Shortest step. Seconds, 0.00001 or more.
     pub min_s: f64,
-    /// Longest step. Seconds, at least `min_s`. A cycle that takes longer leaves the animation behind real time for good.
+    /// Longest step. Seconds, from `min_s` to 1. A cycle that takes longer leaves the animation behind real time for good.
     pub max_s: f64,
+}
+
+impl StepLimits {
+    fn check(&self) -> Result<(), DriverError> {
+        let StepLimits { min_s, max_s } = *self;
+        let (shortest, longest) = (0.000_01, 1.0);
+        let refused = |field, message| Err(DriverError::Setting { field, message });
+        if !(shortest..=longest).contains(&min_s) {
+            return refused("min_s", format!("must be from {shortest} to {longest}, is {min_s}"));
+        }
+        if !(min_s..=longest).contains(&max_s) {
+            return refused("max_s", format!("must be from min_s ({min_s}) to {longest}, is {max_s}"));
+        }
+        Ok(())
+    }
 }
 
 impl Default for StepLimits {
@@ -41,9 +57,19 @@ pub struct Coupled {
 
 impl Coupled {
     /// A driver for `world`, whose present states are those of time 0.
-    #[must_use]
-    pub fn new(world: World, clock: Clock, threads: Threads, limits: StepLimits) -> Self {
-        Coupled { world, clock, threads, limits, slow_down: Duration::ZERO, cycle_start: None, time_s: 0.0 }
+    ///
+    /// # Errors
+    /// When a limit is out of its range, or the world's environment is one that no step can be done in.
+    pub fn new(
+        world: World,
+        clock: Clock,
+        threads: Threads,
+        limits: StepLimits,
+    ) -> Result<Self, DriverError> {
+        limits.check()?;
+        world.environment.check().map_err(DriverError::Environment)?;
+        let slow_down = Duration::ZERO;
+        Ok(Coupled { world, clock, threads, limits, slow_down, cycle_start: None, time_s: 0.0 })
     }
 
     /// Makes every step this much slower, to see what a slow scene does.
@@ -109,6 +135,35 @@ mod tests {
         let ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::Y * 100.0);
         world.add(&ball).expect("a plain ball");
         Coupled::new(world, clock.clone(), Threads::all().expect("threads"), StepLimits::default())
+            .expect("the limits are possible")
+    }
+
+    #[test]
+    fn impossible_limits_and_environments_are_refused_at_the_start() {
+        let refused = |limits: (f64, f64), environment: Environment| {
+            let limits = StepLimits { min_s: limits.0, max_s: limits.1 };
+            let threads = Threads::all().expect("threads");
+            Coupled::new(World::new(environment), Clock::by_hand(), threads, limits).err()
+        };
+        assert_eq!(refused((0.000_01, 1.0), Environment::default()), None);
+        assert_eq!(refused((0.02, 0.02), Environment::default()), None);
+        for (limits, at_fault) in [
+            ((0.0, 0.04), "min_s"),
+            ((f64::NAN, 0.04), "min_s"),
+            ((0.01, 1.5), "max_s"),
+            ((0.04, 0.01), "max_s"),
+            ((0.01, f64::NAN), "max_s"),
+        ] {
+            let error = refused(limits, Environment::default());
+            assert!(
+                matches!(error, Some(DriverError::Setting { field, .. }) if field == at_fault),
+                "{error:?}"
+            );
+        }
+        let mut environment = Environment::default();
+        environment.settings.substeps = 0;
+        let error = refused((0.001, 0.042), environment).map(|error| error.to_string());
+        assert_eq!(error.as_deref(), Some("environment: substeps: must be from 1 to 64, is 0"));
     }
 
     #[test]

@@ -2,7 +2,6 @@
 //!
 //! Promise: no call here waits for a step. What the physics knows comes by one atomic read, what the user does goes by a bounded queue.
 
-use std::fmt;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
@@ -10,17 +9,21 @@ use std::time::Duration;
 
 use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Snapshot, Stats, Timeline};
 
+use super::driver_error::DriverError;
 use super::frame_notes::FrameNote;
 use super::physics::{self, Hinder, Shared};
 use super::reach::Reach;
 use crate::{BodyDef, BodyId, Threads};
+
+/// The largest queue: its memory is taken at the start, and a queue without room would never be drained.
+const COMMANDS_MAX: usize = 65_536;
 
 /// How the physics thread works.
 #[derive(Debug)]
 pub struct DecoupledSettings {
     /// Threads of the physics.
     pub threads: Threads,
-    /// Commands that may wait for the physics; more are refused. Default 1024.
+    /// Commands that may wait for the physics; more are refused. 1 to 65536, default 1024.
     pub command_capacity: usize,
     /// Makes every computed frame this much slower, to see what a slow scene does. Default 0.
     pub slow_down: Duration,
@@ -64,36 +67,11 @@ pub struct Decoupled {
     next_sequence: u64,
 }
 
-/// Why the driver cannot do what it is asked.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum DriverError {
-    /// The physics thread could not be started.
-    NotStarted(String),
-    /// Too many commands wait already: show a picture and try again.
-    QueueFull,
-    /// The physics thread panicked: a bug. What was published before can still be shown.
-    Panicked(String),
-}
-
-impl fmt::Display for DriverError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            DriverError::NotStarted(cause) => write!(f, "the physics thread cannot be started: {cause}"),
-            DriverError::QueueFull => {
-                f.write_str("the command queue is full: physics is behind; try again after the next picture")
-            }
-            DriverError::Panicked(message) => write!(f, "the physics thread panicked: {message}"),
-        }
-    }
-}
-
-impl std::error::Error for DriverError {}
-
 impl Decoupled {
     /// Hands a timeline to a new physics thread, which at once begins to run ahead.
     ///
     /// # Errors
-    /// When the system refuses to start a thread.
+    /// When the command capacity is out of its range, or the system refuses to start a thread.
     pub fn start(timeline: Timeline, settings: DecoupledSettings) -> Result<Self, DriverError> {
         let slow_down = settings.slow_down;
         let sleep = move || {
@@ -110,11 +88,17 @@ impl Decoupled {
         settings: DecoupledSettings,
         hinder: Hinder,
     ) -> Result<Self, DriverError> {
-        let (commands, command_queue) = sync_channel(settings.command_capacity);
-        let (refusal_queue, refusals) = sync_channel(settings.command_capacity);
+        let capacity = settings.command_capacity;
+        if !(1..=COMMANDS_MAX).contains(&capacity) {
+            let message = format!("must be from 1 to {COMMANDS_MAX}, is {capacity}");
+            return Err(DriverError::Setting { field: "command_capacity", message });
+        }
+        let (commands, command_queue) = sync_channel(capacity);
+        let (refusal_queue, refusals) = sync_channel(capacity);
         let snapshot = timeline.snapshot();
         let frame_seconds = f64::from(snapshot.frame_seconds());
         let next_body = timeline.reserve_body();
+        let next_sequence = timeline.next_sequence();
         let reach = Reach::new(timeline.settings().lookahead);
         let shared = Arc::new(Shared::new(&timeline));
         let physics = physics::Physics {
@@ -122,7 +106,7 @@ impl Decoupled {
             shared: Arc::clone(&shared),
             commands: command_queue,
             refusals: refusal_queue,
-            command_capacity: settings.command_capacity,
+            command_capacity: capacity,
             reach,
             pictures: 0,
             hinder,
@@ -137,7 +121,7 @@ impl Decoupled {
             frame_seconds,
             time_s: 0.0,
             next_body,
-            next_sequence: 0,
+            next_sequence,
         })
     }
 
@@ -177,7 +161,7 @@ impl Decoupled {
         let key =
             CommandKey { frame: self.displayed_frame().next(), source: 0, sequence: self.next_sequence };
         self.submit(Command { key, change })?;
-        self.next_sequence += 1;
+        self.next_sequence = self.next_sequence.saturating_add(1);
         Ok(key)
     }
 

@@ -27,13 +27,14 @@ pub struct Playback {
 /// A picture is due every 1/fps seconds. One that comes late moves the next ones: nobody catches up by showing two at once.
 ///
 /// # Errors
-/// When the scene is not possible, or the driver fails on the way.
+/// When a setting is out of its range, the scene is not possible, or the driver fails on the way.
 pub fn play(
     scene: &Scene,
     settings: &PlaybackSettings,
     clock: &Clock,
     on_picture: &mut dyn FnMut(&QueueRow),
 ) -> Result<Playback, PlaybackError> {
+    settings.check()?;
     let mut show = Show::new(scene, settings, clock)?;
     let interval = Duration::from_secs_f64(1.0 / settings.fps);
     let length = Duration::from_secs_f64(settings.seconds);

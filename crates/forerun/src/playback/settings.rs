@@ -32,16 +32,30 @@ impl DriverKind {
 pub struct PlaybackSettings {
     /// Who steps the physics. Default decoupled.
     pub driver: DriverKind,
-    /// Length of the playback. Seconds of real time, above 0. Default 10.
+    /// Length of the playback. Seconds of real time, above 0, at most 1 000 000. Default 10.
     pub seconds: f64,
-    /// Pictures per second, above 0. Default 30.
+    /// Pictures per second, 0.001 to 10 000. Default 30.
     pub fps: f64,
-    /// Most frames that the decoupled physics is ahead of the display. Default 100.
+    /// Most frames that the decoupled physics is ahead of the display. 1 or more, default 100.
     pub lookahead: u32,
     /// Threads of the physics; `None` for one per core. Default `None`.
     pub threads: Option<NonZeroU16>,
     /// Makes every step this much slower. Default 0.
     pub slow_down: Duration,
+}
+
+impl PlaybackSettings {
+    pub(super) fn check(&self) -> Result<(), PlaybackError> {
+        let PlaybackSettings { seconds, fps, .. } = *self;
+        let refused = |field, message| Err(PlaybackError::Setting { field, message });
+        if !(seconds > 0.0 && seconds <= 1e6) {
+            return refused("seconds", format!("must be above 0 and at most 1000000, is {seconds}"));
+        }
+        if !(0.001..=10_000.0).contains(&fps) {
+            return refused("fps", format!("must be from 0.001 to 10000, is {fps}"));
+        }
+        Ok(())
+    }
 }
 
 impl Default for PlaybackSettings {
@@ -60,11 +74,18 @@ impl Default for PlaybackSettings {
 /// Why a scene cannot be played, or not to its end.
 #[derive(Debug)]
 pub enum PlaybackError {
+    /// A setting is out of its range.
+    Setting {
+        /// The field at fault, as in [`PlaybackSettings`].
+        field: &'static str,
+        /// What is wrong and what is allowed.
+        message: String,
+    },
     /// The scene cannot be brought to the engine.
     Staging(StagingError),
     /// The threads cannot be started.
     Threads(ThreadsError),
-    /// The decoupled driver failed.
+    /// The driver failed.
     Driver(DriverError),
     /// A command of the scene cannot be carried out.
     Change {
@@ -78,6 +99,7 @@ pub enum PlaybackError {
 impl fmt::Display for PlaybackError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            PlaybackError::Setting { field, message } => write!(f, "{field}: {message}"),
             PlaybackError::Staging(error) => write!(f, "{error}"),
             PlaybackError::Threads(error) => write!(f, "{error}"),
             PlaybackError::Driver(error) => write!(f, "{error}"),

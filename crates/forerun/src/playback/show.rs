@@ -32,7 +32,7 @@ impl Show {
                 DecoupledShow::new(scene, script, (settings, threads)).map(Show::Decoupled)
             }
             DriverKind::Coupled => {
-                let driver = Coupled::new(world_of(scene)?, clock.clone(), threads, StepLimits::default())
+                let driver = Coupled::new(world_of(scene)?, clock.clone(), threads, StepLimits::default())?
                     .with_slow_down(settings.slow_down);
                 let frame_seconds = f64::from(scene.frame_seconds);
                 Ok(Show::Coupled(CoupledShow { driver, script, scene: scene.name.clone(), frame_seconds }))

@@ -133,6 +133,17 @@ fn past_the_horizon_the_last_state_is_held_and_commands_are_taken() {
 }
 
 #[test]
+fn a_queue_that_cannot_be_is_refused_at_the_start() {
+    for command_capacity in [0, usize::MAX] {
+        let refused =
+            Decoupled::start(timeline(), DecoupledSettings { command_capacity, ..settings() }).err();
+        let Some(DriverError::Setting { field, message }) = refused else { panic!("{refused:?}") };
+        assert_eq!(field, "command_capacity");
+        assert_eq!(message, format!("must be from 1 to 65536, is {command_capacity}"));
+    }
+}
+
+#[test]
 fn a_full_queue_pushes_back_at_once_and_takes_commands_again_later() {
     let slow_down = Duration::from_millis(100);
     let mut driver =
@@ -155,6 +166,20 @@ fn a_command_that_the_timeline_refuses_comes_back_with_the_reason() {
         !refusals.is_empty()
     }));
     assert_eq!(refusals, [(key, CommandError::UnknownBody(BodyId(77)))]);
+}
+
+#[test]
+fn local_changes_count_on_after_the_commands_that_the_timeline_had() {
+    let mut timeline = timeline();
+    let staged = timeline.change(Frame(1), Change::Release { body: BodyId(1) }).expect("a plain change");
+    let mut driver = Decoupled::start(timeline, settings()).expect("a thread");
+    let key = driver.change(Change::Release { body: BodyId(2) }).expect("the queue has room");
+    assert_eq!((key.frame, key.sequence), (staged.frame, staged.sequence + 1));
+    assert!(eventually(|| {
+        driver.show(0.0).expect("physics lives");
+        full(&driver)
+    }));
+    assert_eq!(driver.refusals(), []);
 }
 
 #[test]
