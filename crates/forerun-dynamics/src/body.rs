@@ -2,7 +2,7 @@
 
 use forerun_geometry::{Pose, Shape, Vec3};
 
-use crate::{BodyDef, BodyError, BodyState, Mass};
+use crate::{BodyDef, BodyError, BodyState, Environment, Mass};
 
 /// Name of a body. Never used again after the body is removed; the order of ids is the canonical order of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -109,8 +109,10 @@ impl Body {
             }
         };
         let dynamic = def.kind == BodyKind::Dynamic;
-        if dynamic && !(mass > 0.0 && mass.is_finite() && inertia.min_element() > 0.0 && inertia.is_finite())
-        {
+        // The inverses too: a mass of 1e-39 kg is above 0 and has none.
+        let heavy = mass > 0.0 && mass.is_finite() && (1.0 / mass).is_finite();
+        let spins = inertia.min_element() > 0.0 && inertia.is_finite() && inertia.recip().is_finite();
+        if dynamic && !(heavy && spins) {
             return Err(BodyError {
                 field: "shape",
                 message: format!(
@@ -160,6 +162,12 @@ impl Body {
     #[must_use]
     pub fn own_pose(&self, state: &BodyState) -> Pose {
         state.pose() * self.frame
+    }
+
+    /// Acceleration of the centre of mass by gravity and the external force. m/s²
+    #[must_use]
+    pub fn acceleration(&self, environment: &Environment) -> Vec3 {
+        environment.gravity * self.gravity_scale + self.force * self.inverse_mass
     }
 
     /// Whether forces and contacts move it.

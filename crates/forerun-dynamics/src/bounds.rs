@@ -5,6 +5,7 @@
 
 use forerun_geometry::{Aabb, Motion, Vec3};
 
+use crate::solver::{pull, times_inverse_inertia};
 use crate::{Body, BodyKind, BodyState, Environment};
 
 /// How much further than its velocity says a body is expected to move.
@@ -30,8 +31,8 @@ pub fn frame_motion(body: &Body, state: &BodyState, environment: &Environment) -
         BodyKind::Fixed => Vec3::ZERO,
         BodyKind::Kinematic => state.velocity * dt,
         BodyKind::Dynamic => {
-            let acceleration = environment.gravity * body.gravity_scale + body.force * body.inverse_mass;
-            (state.velocity + acceleration * dt) * dt
+            let (velocity, _) = pull(body, state, dt);
+            (velocity + body.acceleration(environment) * dt) * dt
         }
     }
 }
@@ -42,15 +43,31 @@ fn spin_reach(body: &Body, state: &BodyState, environment: &Environment) -> f32 
         return 0.0;
     }
     // No more than a full turn's worth: every point stays within the radius of the centre of mass.
-    let turn = state.angular_velocity.length() * environment.settings.frame_seconds * MOTION_FACTOR;
+    let turn = frame_turn(body, state, environment).length() * MOTION_FACTOR;
     body.radius * turn.min(2.0)
+}
+
+/// Rotation vector in the frame, if nothing is in the way: springs and torques included. Radians.
+fn frame_turn(body: &Body, state: &BodyState, environment: &Environment) -> Vec3 {
+    let dt = environment.settings.frame_seconds;
+    match body.kind {
+        BodyKind::Fixed => Vec3::ZERO,
+        BodyKind::Kinematic => state.angular_velocity * dt,
+        BodyKind::Dynamic => {
+            let (_, mut spin) = pull(body, state, dt);
+            if body.torque != Vec3::ZERO {
+                let axes = state.pose().axes();
+                spin += times_inverse_inertia(&axes, body.inverse_inertia, body.torque * dt);
+            }
+            spin * dt
+        }
+    }
 }
 
 /// The expected motion as the narrow phase wants it.
 #[must_use]
 pub fn motion(body: &Body, state: &BodyState, environment: &Environment) -> Motion {
-    let dt = environment.settings.frame_seconds;
-    let angular = if body.kind == BodyKind::Fixed { Vec3::ZERO } else { state.angular_velocity * dt };
+    let angular = frame_turn(body, state, environment);
     Motion { linear: frame_motion(body, state, environment), angular, about: state.position }
 }
 

@@ -1,9 +1,11 @@
 //! Plan: which islands a group falls into, what each needs, and how they are packed into batches.
 
+use forerun_geometry::Vec3;
+
+use crate::Environment;
 use crate::narrow_phase::Contact;
 use crate::solver::{Islands, is_mesh};
 use crate::step::{Group, Member};
-use crate::{Environment, bounds};
 
 /// Contacts that a batch holds at least, if there are so many: enough to fill the lanes, few enough to share out.
 const CONTACTS_PER_BATCH: usize = 1024;
@@ -120,7 +122,9 @@ fn resting(group: &Group, roots: &Islands, environment: &Environment) -> Vec<boo
     let full = environment.settings.rest_frames();
     let mut awake = vec![full == 0; members.len()];
     for (i, m) in members.iter().enumerate() {
-        if m.body.is_dynamic() && m.state.rest <= full {
+        // Velocities are asked too: whoever changes the length of a frame changes how many of them rest takes.
+        let still = m.state.velocity == Vec3::ZERO && m.state.angular_velocity == Vec3::ZERO;
+        if m.body.is_dynamic() && (m.state.rest <= full || !still) {
             awake[roots.root(i)] = true;
         }
     }
@@ -158,11 +162,10 @@ pub(crate) fn half_thickness(a: &Member, b: &Member) -> f32 {
 /// How far the contact closes in the frame at the speed of its start. Metres.
 fn approach(contact: &Contact, a: &Member, b: &Member, environment: &Environment) -> f32 {
     let m = &contact.manifold;
-    let ma = bounds::motion(a.body, &a.state, environment);
-    let mb = bounds::motion(b.body, &b.state, environment);
+    // Without gravity: what lies still is not to be cut, however thin it is.
     m.points[..m.count as usize].iter().fold(0.0, |most, p| {
-        let at = |m: &forerun_geometry::Motion| m.linear + m.angular.cross(p.position - m.about);
-        f32::max(most, -(at(&mb) - at(&ma)).dot(p.normal))
+        let speed = (a.state.velocity_at(p.position) - b.state.velocity_at(p.position)).dot(p.normal);
+        f32::max(most, speed * environment.settings.frame_seconds)
     })
 }
 

@@ -47,7 +47,7 @@ pub struct StepSettings {
     pub contact_margin_m: f32,
     /// Overlap that is left alone. Metres, default 0.0005.
     pub overlap_allowed_m: f32,
-    /// Part of the remaining overlap that one frame removes. 0 to 1, default 0.3.
+    /// Part of the remaining overlap that one frame, or slice of one, removes. 0 to 1, default 0.3.
     pub overlap_recovery: f32,
     /// Fastest removal of overlap. m/s, default 0.5.
     pub recovery_speed_max: f32,

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::narrow_phase::{Contact, find_contacts};
 use crate::plan::{Island, Plan, half_thickness, pack};
-use crate::solver::{Batch, fly};
+use crate::solver::{Batch, fly, rest_after_slices};
 use crate::{Body, BodyId, BodyKind, BodyState, Environment, Observer, Stage};
 
 /// An overlap that grows by less than this is never too deep. Metres.
@@ -160,7 +160,7 @@ impl<'a> Slicer<'a> {
                 members.iter_mut().zip(&packed).zip(batches.iter().zip(solved))
             {
                 for (member, state) in members.iter_mut().zip(&states) {
-                    // Rest is counted in whole frames.
+                    // Rest is counted in whole frames: at the end.
                     member.state = BodyState { rest: 0, ..*state };
                 }
                 if slice + 1 == self.count {
@@ -239,6 +239,9 @@ impl<'a> Slicer<'a> {
             at += self.group.members[at..].partition_point(|m| m.id < member.id);
             if member.body.is_dynamic() {
                 next[at] = *state;
+                if self.count > 1 {
+                    next[at].rest = rest_after_slices(&self.group.members[at], state, self.environment);
+                }
             }
         }
     }

@@ -124,3 +124,22 @@ fn a_kinematic_body_pushes_what_rests_and_drops_what_it_carried() {
     assert!(pushed.x > 2.0, "the kinematic body passed through: {pushed}");
     assert!((dropped.y - 0.25).abs() < 0.01, "the block hangs at {dropped}");
 }
+
+#[test]
+fn a_body_that_blows_up_does_not_reach_the_others_through_the_ground() {
+    let calm = |with_bomb: bool| {
+        let mut slider = cuboid(common::UNIT, Vec3::new(0.0, 0.5, 0.0));
+        slider.velocity.x = 3.0;
+        let mut defs = vec![ground(), slider];
+        if with_bomb {
+            let mut bomb = cuboid(Vec3::splat(0.25), Vec3::new(10.0, 0.25, 5.0));
+            bomb.torque.y = 3e38;
+            defs.push(bomb);
+        }
+        let mut world = world_of(&defs);
+        run(&mut world, 60);
+        assert!(world.states().iter().all(BodyState::is_finite));
+        bits(&world)[1]
+    };
+    assert!(calm(false) == calm(true), "the sliding box noticed the other one");
+}

@@ -10,7 +10,7 @@ use super::collisions::{Moving, resolve_collisions};
 use super::contact_graph::ContactGraph;
 use super::islands::Islands;
 use super::load::{Load, LoadPass, Strain};
-use super::positions::{Ending, IslandsAt, moved, settle};
+use super::positions::{Ending, IslandsAt, REST_TOUCH_M, moved, settle};
 use super::prepare::{Source, prepare};
 use super::shock::{propagate_classic, propagate_shock};
 use super::sweep::{relax, sweep};
@@ -18,7 +18,7 @@ use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
 use crate::lanes::{Portable, Row};
 use crate::narrow_phase::Contact;
-use crate::{BodyState, Environment, Member, ShockPropagation};
+use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
 
 /// An island is hard when the load pass leaves more than this part of its weight to the sweeps: stacks and pyramids leave none, a heap most of it.
 const HARD_PART: f64 = 0.1;
@@ -82,7 +82,7 @@ impl<'a> Batch<'a> {
     /// Stage 3: levels, load, rows.
     pub(crate) fn build_contact_graph(&mut self) {
         let dynamic = &self.dynamic;
-        self.graph = ContactGraph::build(self.members.len(), |i| dynamic[i], &self.contacts);
+        self.graph = ContactGraph::build(&self.members, &self.contacts);
         let (loads, strains) = self.loads();
         let hard = self.hard(&strains);
         let is_hard = |k: &u32| hard[self.island_of(&self.contacts[*k as usize])];
@@ -135,9 +135,6 @@ impl<'a> Batch<'a> {
     pub(crate) fn resolve_contacts(&mut self) {
         let h = self.substep_seconds();
         let settings = self.environment.settings;
-        // Slower is what gravity does to a body at rest: that is contact, not collision.
-        let fall = settings.frame_seconds * self.environment.gravity.length();
-        let spared = if self.bounces { fall } else { f32::INFINITY };
         let driven = self.driven();
         let guard = EnergyGuard { islands: &self.islands, dynamic: &self.dynamic, driven: &driven };
         let mut kicks: Vec<Row> = self.bodies.accelerations.iter().map(|a| Row(a.0.map(|x| x * h))).collect();
@@ -146,14 +143,7 @@ impl<'a> Batch<'a> {
         let (blocks, bodies) = (&mut self.blocks, &mut self.bodies);
         for substep in 0..settings.substeps {
             if self.bounces {
-                let mut moving = Moving {
-                    velocities: &mut bodies.velocities,
-                    displacements: &bodies.displacements,
-                    kicks: &kicks,
-                    substep_seconds: h,
-                    fall,
-                };
-                resolve_collisions(blocks, &mut moving);
+                resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings));
             }
             for (velocity, kick) in bodies.velocities.iter_mut().zip(&kicks) {
                 for k in 0..6 {
@@ -177,7 +167,7 @@ impl<'a> Batch<'a> {
             }
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);
-            relax(blocks, &mut bodies.velocities, &bodies.displacements, h, spared);
+            relax(blocks, &mut moving(bodies, &kicks, &settings), self.bounces);
             if settings.shock_propagation == ShockPropagation::Classic {
                 propagate_classic(blocks, &mut bodies.velocities, &bodies.displacements, h);
             }
@@ -225,11 +215,13 @@ impl<'a> Batch<'a> {
     }
 
     fn endings(&self) -> Vec<Ending> {
-        let mut endings: Vec<Ending> = self.spins.iter().map(|&spin| Ending { spin, overlap: 0.0 }).collect();
+        let mut endings: Vec<Ending> =
+            self.spins.iter().map(|&spin| Ending { spin, ..Ending::default() }).collect();
         for c in &self.contacts {
             let deepest = deepest(c);
             for i in [c.first as usize, c.second as usize] {
                 endings[i].overlap = endings[i].overlap.max(deepest);
+                endings[i].touches |= c.manifold.deepest() < REST_TOUCH_M;
             }
         }
         endings
@@ -256,6 +248,17 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
 fn deepest(contact: &Contact) -> f32 {
     let m = &contact.manifold;
     m.points[..m.count as usize].iter().fold(0.0, |deepest, p| deepest.max(-p.separation))
+}
+
+/// What the kernels that look ahead need of the bodies.
+fn moving<'a>(bodies: &'a mut Bodies, kicks: &'a [Row], settings: &StepSettings) -> Moving<'a> {
+    Moving {
+        velocities: &mut bodies.velocities,
+        displacements: &bodies.displacements,
+        kicks,
+        substep_seconds: settings.frame_seconds / settings.substeps as f32,
+        substeps: settings.substeps as f32,
+    }
 }
 
 /// Moves the bodies by their velocities for one substep. A body that no impulse reached flies its parabola; one that was pushed moves as the

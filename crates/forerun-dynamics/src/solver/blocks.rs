@@ -75,6 +75,10 @@ pub(crate) struct Momentum<F> {
 pub(crate) struct Block<F> {
     pub(crate) first: [u32; LANES],
     pub(crate) second: [u32; LANES],
+    /// Where the sides are written: their own rows, or, for sides that no impulse moves, a row that nobody reads. What happens to an island must
+    /// not reach the others through the ground that they share.
+    pub(crate) first_out: [u32; LANES],
+    pub(crate) second_out: [u32; LANES],
     /// Index of the contact, or [`NO_CONTACT`].
     pub(crate) source: [u32; LANES],
     pub(crate) first_scale: F,
@@ -93,7 +97,7 @@ pub(crate) struct Block<F> {
 }
 
 impl<F: Lanes> Block<F> {
-    /// A block without contacts: every lane is the dummy body against itself.
+    /// A block without contacts: every lane is the dummy body against itself. The row after the dummy's is for what nobody reads.
     pub(crate) fn empty(dummy: u32) -> Self {
         let (z, v) = (F::zero(), V8::zero());
         let point =
@@ -101,6 +105,8 @@ impl<F: Lanes> Block<F> {
         Block {
             first: [dummy; LANES],
             second: [dummy; LANES],
+            first_out: [dummy + 1; LANES],
+            second_out: [dummy + 1; LANES],
             source: [NO_CONTACT; LANES],
             first_scale: z,
             second_scale: z,
@@ -149,7 +155,7 @@ pub(crate) fn arrange(
         let (here, after) = rest.split_at(length);
         colours.clear();
         colours.extend(here.iter().map(|&k| colouring.colour(level, &contacts[k as usize], yields)));
-        place(here, &colours, contacts, count as u32, &mut blocks);
+        place(here, &colours, (contacts, yields), &mut blocks);
         rest = after;
     }
     blocks
@@ -201,7 +207,13 @@ impl Colouring {
 }
 
 /// Puts the contacts of one level into blocks, colour by colour.
-fn place(here: &[u32], colours: &[u8], contacts: &[Contact], dummy: u32, blocks: &mut Vec<Block<Portable>>) {
+fn place(
+    here: &[u32],
+    colours: &[u8],
+    (contacts, yields): (&[Contact], &[bool]),
+    blocks: &mut Vec<Block<Portable>>,
+) {
+    let dummy = yields.len() as u32;
     const OVERFLOW: usize = COLOURS - 1;
     let mut count = [0usize; COLOURS];
     for &c in colours {
@@ -224,6 +236,9 @@ fn place(here: &[u32], colours: &[u8], contacts: &[Contact], dummy: u32, blocks:
         let contact = &contacts[k as usize];
         block.first[lane] = contact.first;
         block.second[lane] = contact.second;
+        let out = |body: u32| if yields[body as usize] { body } else { dummy + 1 };
+        block.first_out[lane] = out(contact.first);
+        block.second_out[lane] = out(contact.second);
         block.source[lane] = k;
     }
 }

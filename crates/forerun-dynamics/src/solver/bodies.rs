@@ -8,7 +8,7 @@ use forerun_geometry::{Mat3, Vec3};
 use crate::lanes::Row;
 use crate::{BodyKind, Environment, Member};
 
-/// The moving quantities of a batch, one row a body, and one more for a dummy that pads the lanes.
+/// The moving quantities of a batch, one row a body, one more for a dummy that pads the lanes, and where they are written one that nobody reads.
 #[derive(Debug, Default)]
 pub(crate) struct Bodies {
     /// Centre of mass (3), square root of the inverse mass, of the inverse inertia (3), 1 if impulses move the body.
@@ -73,8 +73,8 @@ impl Bodies {
         let mut bodies = Bodies {
             centres: Vec::with_capacity(n + 1),
             axes: Vec::with_capacity(n + 1),
-            velocities: vec![Row::default(); n + 1],
-            displacements: vec![Row::default(); n + 1],
+            velocities: vec![Row::default(); n + 2],
+            displacements: vec![Row::default(); n + 2],
             accelerations: Vec::with_capacity(n),
         };
         for member in members {
@@ -97,7 +97,7 @@ fn acceleration(member: &Member, scale: Scale, environment: &Environment) -> Row
     if !body.is_dynamic() {
         return Row::default();
     }
-    let linear = environment.gravity * body.gravity_scale + body.force * body.inverse_mass;
+    let linear = body.acceleration(environment);
     // sqrt(I) Rᵀ I⁻¹ τ = I^(-1/2) Rᵀ τ
     let v = linear / scale.linear;
     let w = (scale.axes.transpose() * body.torque) * scale.angular;

@@ -19,8 +19,8 @@ pub(crate) struct Moving<'a> {
     /// Mass-scaled change of velocity that gravity and forces will make in the substep.
     pub(crate) kicks: &'a [Row],
     pub(crate) substep_seconds: f32,
-    /// What gravity adds to a speed in a frame: slower approaches are contacts, not collisions. m/s
-    pub(crate) fall: f32,
+    /// How many substeps a frame has.
+    pub(crate) substeps: f32,
 }
 
 dispatched! {
@@ -58,12 +58,12 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
         let row = point.jacobian();
         let separation = point.separation + moved.along(block, &row);
         let speed = v.along(block, &row);
-        let ahead = separation + h * (speed + kick.along(block, &row));
+        let kicked = kick.along(block, &row);
+        let ahead = separation + h * (speed + kicked);
+        // Slower is what gravity does in a frame to a body that rests on the other: contact, not collision. Two that fall alike have none of it.
+        let fall = (-kicked).max(F::zero()) * F::splat(moving.substeps);
         let is_point = point.inverse_k.gt(F::zero());
-        let hit = is_point
-            & speed.lt(F::splat(-moving.fall))
-            & ahead.lt(F::zero())
-            & block.restitution.gt(F::zero());
+        let hit = is_point & speed.lt(-fall) & ahead.lt(F::zero()) & block.restitution.gt(F::zero());
         hits[q] = hit.select(F::one(), F::zero());
         target[q] = -(block.restitution * speed);
         all = is_point.select(all.min(hits[q]), all);

@@ -3,10 +3,13 @@
 //! Promise: levels rise from the bodies that do not yield, one a contact; bodies that touch nothing supported come last. Inside an island levels
 //! and order depend on the island alone, so that islands can be solved together or apart with the same bits.
 
+use crate::Member;
 use crate::narrow_phase::Contact;
 
 /// Contacts nearer than this carry load and levels. Metres; well above the allowed overlap, so that rest does not flip it.
-pub(crate) const TOUCH_M: f32 = 0.01;
+const TOUCH_M: f32 = 0.01;
+/// Or than this part of the thinner body's half thickness, if that is less: what lies on a sheet does not rest on what is under the sheet.
+const TOUCH_PART: f32 = 0.25;
 
 /// A contact, seen from one of its bodies.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +18,7 @@ pub(crate) struct Link {
     pub(crate) body: u32,
     /// Index of the contact.
     pub(crate) contact: u32,
-    /// Whether it touches (see [`TOUCH_M`]).
+    /// Whether it touches: see [`ContactGraph::touch`].
     pub(crate) touches: bool,
 }
 
@@ -25,19 +28,25 @@ pub(crate) struct ContactGraph {
     starts: Vec<u32>,
     links: Vec<Link>,
     level: Vec<u32>,
+    /// Per contact: how near its points count as touching. Metres.
+    touch: Vec<f32>,
     /// Bodies by rising level; bodies that nothing supports are not in it.
     pub(crate) order: Vec<u32>,
 }
 
 impl ContactGraph {
-    /// The graph over `count` bodies; those that do not yield are the ground.
-    pub(crate) fn build(count: usize, yields: impl Fn(usize) -> bool, contacts: &[Contact]) -> ContactGraph {
-        let mut graph = ContactGraph::adjacency(count, contacts);
-        graph.assign_levels(count, yields);
+    /// The graph over the bodies of a batch; those that do not yield are the ground.
+    pub(crate) fn build(members: &[Member], contacts: &[Contact]) -> ContactGraph {
+        let mut graph = ContactGraph::adjacency(members, contacts);
+        graph.assign_levels(members.len(), |i| members[i].body.is_dynamic());
         graph
     }
 
-    fn adjacency(count: usize, contacts: &[Contact]) -> ContactGraph {
+    fn adjacency(members: &[Member], contacts: &[Contact]) -> ContactGraph {
+        let count = members.len();
+        let half = |i: u32| members[i as usize].body.half_thickness;
+        let touch: Vec<f32> =
+            contacts.iter().map(|c| TOUCH_M.min(TOUCH_PART * half(c.first).min(half(c.second)))).collect();
         let mut starts = vec![0u32; count + 1];
         for c in contacts {
             starts[c.first as usize + 1] += 1;
@@ -50,13 +59,13 @@ impl ContactGraph {
         let mut links = vec![Link { body: 0, contact: 0, touches: false }; 2 * contacts.len()];
         for (k, c) in contacts.iter().enumerate() {
             let points = &c.manifold.points[..c.manifold.count as usize];
-            let touches = points.iter().any(|p| p.separation < TOUCH_M);
+            let touches = points.iter().any(|p| p.separation < touch[k]);
             for (here, there) in [(c.first, c.second), (c.second, c.first)] {
                 links[next[here as usize] as usize] = Link { body: there, contact: k as u32, touches };
                 next[here as usize] += 1;
             }
         }
-        ContactGraph { starts, links, level: Vec::new(), order: Vec::new() }
+        ContactGraph { starts, links, touch, level: Vec::new(), order: Vec::new() }
     }
 
     /// Breadth first from the ground over touching contacts: bodies of a cycle share a level or differ by one, whoever is first reached.
@@ -92,6 +101,11 @@ impl ContactGraph {
     /// The contacts of a body, in canonical order.
     pub(crate) fn links(&self, body: usize) -> &[Link] {
         &self.links[self.starts[body] as usize..self.starts[body + 1] as usize]
+    }
+
+    /// How near the points of a contact count as touching. Metres, above 0.
+    pub(crate) fn touch(&self, contact: usize) -> f32 {
+        self.touch[contact]
     }
 
     /// The level of a body: 0 for the ground.

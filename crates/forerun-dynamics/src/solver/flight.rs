@@ -21,7 +21,7 @@ pub(crate) fn fly(body: &Body, state: &BodyState, environment: &Environment, sec
                 return BodyState { rest: 0, ..*state };
             }
             let (velocity, angular_velocity) = pull(body, state, seconds);
-            let acceleration = environment.gravity * body.gravity_scale + body.force * body.inverse_mass;
+            let acceleration = body.acceleration(environment);
             next.velocity = velocity + acceleration * seconds;
             next.position += (velocity + next.velocity) * (0.5 * seconds);
             let half = twisted(body, state, angular_velocity, 0.5 * seconds);
@@ -36,7 +36,7 @@ pub(crate) fn fly(body: &Body, state: &BodyState, environment: &Environment, sec
 /// Whether nothing moves the body: it keeps its bits.
 fn stays(body: &Body, state: &BodyState, environment: &Environment) -> bool {
     let still = state.velocity == Vec3::ZERO && state.angular_velocity == Vec3::ZERO;
-    let acceleration = environment.gravity * body.gravity_scale + body.force * body.inverse_mass;
+    let acceleration = body.acceleration(environment);
     still && acceleration == Vec3::ZERO && body.torque == Vec3::ZERO && body.spring.is_none()
 }
 

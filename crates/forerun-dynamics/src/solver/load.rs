@@ -6,7 +6,7 @@
 
 use forerun_geometry::Vec3;
 
-use super::contact_graph::{ContactGraph, Link, TOUCH_M};
+use super::contact_graph::{ContactGraph, Link};
 use super::prepare::combine;
 use super::pressure::{Carried, Support, fit};
 use crate::narrow_phase::Contact;
@@ -193,7 +193,9 @@ impl LoadPass<'_> {
             move |link| {
                 let contact = &self.contacts[link.contact as usize];
                 (0..contact.manifold.count as usize)
-                    .filter(move |&p| contact.manifold.points[p].separation < TOUCH_M)
+                    .filter(move |&p| {
+                        contact.manifold.points[p].separation < self.graph.touch(link.contact as usize)
+                    })
                     .filter(move |&p| self.rise(contact, p, i, compass) >= RISE_MIN)
                     .map(move |p| (link, p))
             },
@@ -252,6 +254,7 @@ impl LoadPass<'_> {
         for (link, p) in self.points_below(i, compass) {
             let contact = &self.contacts[link.contact as usize];
             let point = &contact.manifold.points[p];
+            let touch = self.graph.touch(link.contact as usize);
             let (x, z) = self.place(contact, (p, i), compass, loads[link.contact as usize].slide);
             out.push(Support {
                 x,
@@ -260,7 +263,7 @@ impl LoadPass<'_> {
                 point: p as u32,
                 below: link.body,
                 rise: self.rise(contact, p, i, compass),
-                weight: ((TOUCH_M - point.separation) / TOUCH_M).clamp(1e-4, 1.0),
+                weight: ((touch - point.separation) / touch).clamp(1e-4, 1.0),
                 dropped: false,
                 total: 0.0,
                 still: 0.0,

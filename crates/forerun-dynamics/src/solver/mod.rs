@@ -28,3 +28,6 @@ pub(crate) use batch::{Batch, is_mesh};
 pub(crate) use blocks::Block;
 pub(crate) use flight::fly;
 pub(crate) use islands::Islands;
+pub(crate) use positions::rest_after_slices;
+pub(crate) use rotation::times_inverse_inertia;
+pub(crate) use spring::pull;

@@ -6,10 +6,16 @@ use super::bodies::{Bodies, Scale};
 use super::flight::fly;
 use super::islands::Islands;
 use super::rotation::{angular_momentum, is_isotropic, times_inverse_inertia, turned};
+use super::spring::pull;
 use crate::{BodyState, Environment, Member};
 
 /// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
 const SHALLOW_REST: u32 = 4;
+
+/// A body that overlaps deeper than this part of its half thickness does not come to rest, however little that is.
+const REST_PART: f32 = 0.1;
+/// A body that is farther than this from all others has nothing to rest on. Metres.
+pub(crate) const REST_TOUCH_M: f32 = 0.001;
 
 /// What the end of a frame needs to know about one body besides its rows.
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,6 +24,8 @@ pub(crate) struct Ending {
     pub(crate) spin: Vec3,
     /// Deepest overlap with anybody at the start of the frame. Metres.
     pub(crate) overlap: f32,
+    /// Whether it touches anybody, and is not only about to.
+    pub(crate) touches: bool,
 }
 
 /// The islands of a batch, and which of them a moving kinematic body touches (by root).
@@ -41,7 +49,9 @@ pub(crate) fn moved(
     let (velocity, spin) = scale.world_of(&bodies.velocities[i]);
     let (shift, rotation) = scale.world_of(&bodies.displacements[i]);
     let turned_to = turned(member.state.rotation, rotation);
-    let angular_velocity = carried(member, &scale.axes, ending.spin, spin, Mat3::from_quat(turned_to));
+    let seconds = environment.settings.frame_seconds;
+    let spins = (ending.spin, spin);
+    let angular_velocity = carried(member, &scale.axes, spins, Mat3::from_quat(turned_to), seconds);
     BodyState {
         position: member.state.position + shift,
         rotation: turned_to,
@@ -52,13 +62,15 @@ pub(crate) fn moved(
     .canonical()
 }
 
-/// The angular velocity at the end of the frame: the momentum of the start plus what contacts and torques added, in the new orientation.
-fn carried(member: &Member, axes: &Mat3, start: Vec3, end: Vec3, turned: Mat3) -> Vec3 {
+/// The angular velocity at the end of the frame: the momentum of the start, spring included, plus what contacts and torques added, in the new
+/// orientation.
+fn carried(member: &Member, axes: &Mat3, (start, end): (Vec3, Vec3), turned: Mat3, seconds: f32) -> Vec3 {
     let inverse_inertia = member.body.inverse_inertia;
     if is_isotropic(inverse_inertia) {
         return end;
     }
-    let before = angular_momentum(axes, inverse_inertia, member.state.angular_velocity);
+    let (_, pulled) = pull(member.body, &member.state, seconds);
+    let before = angular_momentum(axes, inverse_inertia, pulled);
     let added = angular_momentum(axes, inverse_inertia, end - start);
     times_inverse_inertia(&turned, inverse_inertia, before + added)
 }
@@ -79,19 +91,21 @@ pub(crate) fn settle(
     }
     let full = settings.rest_frames();
     let islands = at.islands;
-    let mut fixpoint: Vec<bool> = at.driven.iter().map(|driven| !driven).collect();
+    let mut fixpoint = vec![true; members.len()];
     for (i, member) in members.iter().enumerate() {
         if !member.body.is_dynamic() {
             continue;
         }
-        let calm = quiet(member, &next[i], environment);
+        // What a moving body carries or pushes goes with it, however slowly.
+        let held = endings[i].touches && !at.driven[islands.root(i)];
+        let calm = held && quiet(member, &next[i], environment);
         let before = member.state.rest.min(full);
         let overlap = endings[i].overlap;
         let shallow = overlap < 2.0 * settings.overlap_allowed_m;
         let counted = (before + 1).min(full);
         next[i].rest = if !calm {
             0
-        } else if overlap > settings.rest_overlap_m {
+        } else if overlap > settings.rest_overlap_m.min(REST_PART * member.body.half_thickness) {
             // Pushed on, even out of rest: a body between two frozen ones could not get out.
             counted.min(full - 1)
         } else if shallow && counted >= full.div_ceil(SHALLOW_REST) {
@@ -110,6 +124,13 @@ pub(crate) fn settle(
             next[i] = BodyState { velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO, rest, ..pose };
         }
     }
+}
+
+/// The rest counter after a frame that was done in slices: quiet or not over the whole of it, and never at rest.
+pub(crate) fn rest_after_slices(member: &Member, next: &BodyState, environment: &Environment) -> u32 {
+    let full = environment.settings.rest_frames();
+    let calm = full > 0 && member.body.is_dynamic() && quiet(member, next, environment);
+    if calm { (member.state.rest + 1).min(full - 1) } else { 0 }
 }
 
 /// Whether neither velocity nor change of pose shows.

@@ -1,6 +1,7 @@
 //! Sweep: one pass of sequential impulses over the blocks, in level order (Gauss-Seidel).
 
 use super::blocks::{Block, PointRow};
+use super::collisions::Moving;
 use crate::lanes::{LaneMask, Lanes, Row, Twist8, V8, dispatched, gather_twist, scatter_twist};
 
 /// The two bodies of eight contacts, with the impulses applied so far.
@@ -52,8 +53,8 @@ impl<F: Lanes> Sides<F> {
 
     #[inline(always)]
     pub(crate) fn scatter(&self, block: &Block<F>, rows: &mut [Row]) {
-        scatter_twist(rows, &block.first, &self.first);
-        scatter_twist(rows, &block.second, &self.second);
+        scatter_twist(rows, &block.first_out, &self.first);
+        scatter_twist(rows, &block.second_out, &self.second);
     }
 
     /// How fast the second side moves away from the first along a row.
@@ -98,15 +99,9 @@ dispatched! {
 dispatched! {
     /// The last sweep of a substep, after the bodies have moved.
     ///
-    /// An open point of a contact that may bounce is left alone when it approaches faster than `spared` (m/s; infinite: never): the next
+    /// Where there are bounces, an open point of a contact that may bounce is left alone when it approaches faster than what rests: the next
     /// substep's collision is to see it.
-    pub(crate) fn relax(
-        blocks: &mut [Block],
-        velocities: &mut [Row],
-        displacements: &[Row],
-        substep_seconds: f32,
-        spared: f32,
-    ) => relax_lanes
+    pub(crate) fn relax(blocks: &mut [Block], moving: &mut Moving, bounces: bool) => relax_lanes
 }
 
 #[inline(always)]
@@ -128,24 +123,19 @@ fn solve_lanes<F: Lanes>(
 }
 
 #[inline(always)]
-fn relax_lanes<F: Lanes>(
-    blocks: &mut [Block<F>],
-    velocities: &mut [Row],
-    displacements: &[Row],
-    substep_seconds: f32,
-    spared: f32,
-) {
-    let per_second = F::splat(1.0 / substep_seconds);
+fn relax_lanes<F: Lanes>(blocks: &mut [Block<F>], moving: &mut Moving, bounces: bool) {
+    let per_second = F::splat(1.0 / moving.substep_seconds);
     for block in blocks {
-        let mut v = Sides::gather(block, velocities);
-        let moved = Sides::gather(block, displacements);
+        let mut v = Sides::gather(block, moving.velocities);
+        let moved = Sides::gather(block, moving.displacements);
         let mut allowed = allowed(block, &moved, per_second);
-        if spared < f32::INFINITY {
-            spare(block, &v, &mut allowed, spared);
+        if bounces {
+            let kick = Sides::gather(block, moving.kicks);
+            spare(block, &v, &kick, &mut allowed, F::splat(moving.substeps));
         }
         let sum = normals(block, &mut v, &allowed);
         friction(block, &mut v, sum);
-        v.scatter(block, velocities);
+        v.scatter(block, moving.velocities);
     }
 }
 
@@ -161,13 +151,15 @@ fn allowed<F: Lanes>(block: &Block<F>, moved: &Sides<F>, per_second: F) -> [F; 4
     allowed
 }
 
-/// Lets the open points of contacts that may bounce approach as they will, if they are fast.
+/// Lets the open points of contacts that may bounce approach as they will, if they are faster than what rests.
 #[inline(always)]
-fn spare<F: Lanes>(block: &Block<F>, v: &Sides<F>, allowed: &mut [F; 4], spared: f32) {
+fn spare<F: Lanes>(block: &Block<F>, v: &Sides<F>, kick: &Sides<F>, allowed: &mut [F; 4], substeps: F) {
     for q in 0..4 {
         let point = &block.points[q];
+        let row = point.jacobian();
+        let fall = (-kick.along(block, &row)).max(F::zero()) * substeps;
         let open = allowed[q].gt(F::zero()) & point.impulse.le(F::zero()) & block.restitution.gt(F::zero());
-        let fast = v.along(block, &point.jacobian()).lt(F::splat(-spared));
+        let fast = v.along(block, &row).lt(-fall);
         allowed[q] = (open & fast).select(F::splat(FREE_APPROACH), allowed[q]);
     }
 }
