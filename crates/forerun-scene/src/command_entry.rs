@@ -158,13 +158,16 @@ pub struct HoldEntry {
     pub anchor: [f32; 3],
     /// Where it is pulled to, in the world. Metres.
     pub target: [f32; 3],
-    /// Hz, above 0. Default 5.
+    /// Hz, above 0 and at most 10 000. Default 5.
     #[serde(default = "default_frequency")]
     pub frequency_hz: f32,
-    /// 1 is critical. 0 or more, default 1.
+    /// 1 is critical. 0 to 10 000, default 1.
     #[serde(default = "default_damping")]
     pub damping_ratio: f32,
 }
+
+/// Largest frequency (Hz) and damping ratio of a spring, as a timeline accepts them.
+const SPRING_MAX: f32 = 1e4;
 
 fn default_frequency() -> f32 {
     5.0
@@ -291,8 +294,8 @@ impl HoldEntry {
     fn check(&self) -> Result<(), Fault> {
         range::vector(self.anchor, "anchor")?;
         range::vector(self.target, "target")?;
-        range::above_zero(self.frequency_hz, "frequency_hz")?;
-        range::zero_or_more(self.damping_ratio, "damping_ratio")
+        range::above_zero_to(self.frequency_hz, SPRING_MAX, "frequency_hz")?;
+        range::between(self.damping_ratio, (0.0, SPRING_MAX), "damping_ratio")
     }
 }
 

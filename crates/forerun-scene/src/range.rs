@@ -13,6 +13,10 @@ pub(crate) fn above_zero(value: f32, field: &str) -> Result<(), Fault> {
     check(value > 0.0 && value.is_finite(), value, "above 0", field)
 }
 
+pub(crate) fn above_zero_to(value: f32, high: f32, field: &str) -> Result<(), Fault> {
+    check(value > 0.0 && value <= high, value, &format!("above 0 and at most {high}"), field)
+}
+
 pub(crate) fn zero_or_more(value: f32, field: &str) -> Result<(), Fault> {
     check(value >= 0.0 && value.is_finite(), value, "0 or more", field)
 }

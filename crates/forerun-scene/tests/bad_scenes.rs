@@ -370,6 +370,20 @@ const TOML: &[Bad] = &[
         says: &["above 0"],
     },
     Bad {
+        what: "hold stiffer than a step can follow",
+        text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\n[commands.hold]\nbody = 0\ntarget = [0, 0, 0]\nfrequency_hz = 1e20\n",
+        line: 9,
+        field: "commands[0].hold.frequency_hz",
+        says: &["above 0 and at most 10000"],
+    },
+    Bad {
+        what: "hold damped beyond measure",
+        text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\n[commands.hold]\nbody = 0\ntarget = [0, 0, 0]\ndamping_ratio = 1e20\n",
+        line: 9,
+        field: "commands[0].hold.damping_ratio",
+        says: &["from 0 to 10000"],
+    },
+    Bad {
         what: "hold without stiffness",
         text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\n[commands.hold]\nbody = 0\ntarget = [0, 0, 0]\nfrequency_hz = 0\n",
         line: 9,

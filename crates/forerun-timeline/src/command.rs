@@ -10,6 +10,9 @@ use forerun_geometry::{Pose, Vec3};
 
 use crate::Frame;
 
+/// Largest frequency (Hz) and damping ratio of a spring. It is stiffer than any frame can show, and its square is far from what an f32 holds.
+const SPRING_MAX: f32 = 1e4;
+
 /// When a command acts and, within its frame, after which others. The order of keys is the order in which commands act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CommandKey {
@@ -74,7 +77,7 @@ pub enum Change {
     Hold {
         /// Which body.
         body: BodyId,
-        /// The spring.
+        /// The spring: above 0 and at most 10 000 Hz, damping ratio 0 to 10 000.
         spring: Spring,
     },
     /// No spring holds the body any more.
@@ -166,11 +169,11 @@ impl Change {
                 check_vector("spring.anchor", spring.anchor)?;
                 check_vector("spring.target", spring.target)?;
                 let Spring { frequency_hz, damping_ratio, .. } = *spring;
-                check("spring.frequency_hz", frequency_hz > 0.0 && frequency_hz.is_finite(), || {
-                    format!("must be above 0 Hz, is {frequency_hz}")
+                check("spring.frequency_hz", frequency_hz > 0.0 && frequency_hz <= SPRING_MAX, || {
+                    format!("must be above 0 and at most {SPRING_MAX} Hz, is {frequency_hz}")
                 })?;
-                check("spring.damping_ratio", damping_ratio >= 0.0 && damping_ratio.is_finite(), || {
-                    format!("must be 0 or more, is {damping_ratio}")
+                check("spring.damping_ratio", (0.0..=SPRING_MAX).contains(&damping_ratio), || {
+                    format!("must be from 0 to {SPRING_MAX}, is {damping_ratio}")
                 })
             }
             Change::SetMaterial { material, .. } => check_material(material),
@@ -258,3 +261,27 @@ impl fmt::Display for CommandError {
 }
 
 impl std::error::Error for CommandError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn springs_that_no_frame_could_follow_are_refused() {
+        let refused = |frequency_hz: f32, damping_ratio: f32| {
+            let spring = Spring { anchor: Vec3::ZERO, target: Vec3::ZERO, frequency_hz, damping_ratio };
+            let checked = Change::Hold { body: BodyId(0), spring }.check_numbers();
+            checked.map_err(|error| error.to_string()).err()
+        };
+        assert_eq!(refused(1e4, 1e4), None);
+        assert_eq!(refused(1e-20, 0.0), None);
+        let frequency = "spring.frequency_hz: must be above 0 and at most 10000 Hz, is ";
+        for bad in [0.0, -1.0, 10_001.0, 1e20, f32::INFINITY, f32::NAN] {
+            assert_eq!(refused(bad, 1.0), Some(format!("{frequency}{bad}")));
+        }
+        let damping = "spring.damping_ratio: must be from 0 to 10000, is ";
+        for bad in [-1.0, 1e20, f32::INFINITY, f32::NAN] {
+            assert_eq!(refused(5.0, bad), Some(format!("{damping}{bad}")));
+        }
+    }
+}
