@@ -76,6 +76,13 @@ pub enum SceneCommand {
         /// The new surface.
         material: Material,
     },
+    /// A body falls faster or slower, or up, from now on.
+    SetGravityScale {
+        /// Its number.
+        body: u32,
+        /// The factor on gravity.
+        scale: f32,
+    },
     /// A body moves in another way from now on.
     SetKind {
         /// Its number.
@@ -206,6 +213,8 @@ impl<'a> Roster<'a> {
         } else if let Some(new) = &entry.set_material {
             let material = material(new.friction, new.static_friction, new.restitution);
             SceneCommand::SetMaterial { body: find(&new.body)?, material }
+        } else if let Some(new) = &entry.set_gravity_scale {
+            SceneCommand::SetGravityScale { body: find(&new.body)?, scale: new.scale }
         } else if let Some(new) = &entry.set_kind {
             SceneCommand::SetKind { body: find(&new.body)?, kind: new.kind.into() }
         } else if let Some(hold) = &entry.hold {

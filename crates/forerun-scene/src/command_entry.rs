@@ -43,6 +43,9 @@ pub struct CommandEntry {
     /// A body's surface changes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set_material: Option<MaterialEntry>,
+    /// A body's factor on gravity changes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub set_gravity_scale: Option<GravityScaleEntry>,
     /// A body moves in another way from now on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set_kind: Option<SetKindEntry>,
@@ -137,6 +140,16 @@ pub struct MaterialEntry {
     pub restitution: Option<f32>,
 }
 
+/// `set_gravity_scale`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GravityScaleEntry {
+    /// The body.
+    pub body: BodyRef,
+    /// The factor: 0 to float, below 0 to fall up.
+    pub scale: f32,
+}
+
 /// `set_kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -196,7 +209,7 @@ impl CommandEntry {
         if let Some(entry) = &self.move_to {
             return Some((&["move", "body"], &entry.body));
         }
-        body_of!(push, set_velocity, set_force, set_material, set_kind, hold);
+        body_of!(push, set_velocity, set_force, set_material, set_gravity_scale, set_kind, hold);
         None
     }
 
@@ -225,6 +238,9 @@ impl CommandEntry {
         if let Some(entry) = &self.set_material {
             check_surface(entry.friction, entry.static_friction, entry.restitution)
                 .in_field("set_material")?;
+        }
+        if let Some(entry) = &self.set_gravity_scale {
+            range::finite(entry.scale, "scale").in_field("set_gravity_scale")?;
         }
         if let Some(entry) = &self.hold {
             entry.check().in_field("hold")?;
@@ -259,6 +275,7 @@ impl CommandEntry {
             ("set_velocity", self.set_velocity.is_some()),
             ("set_force", self.set_force.is_some()),
             ("set_material", self.set_material.is_some()),
+            ("set_gravity_scale", self.set_gravity_scale.is_some()),
             ("set_kind", self.set_kind.is_some()),
             ("hold", self.hold.is_some()),
             ("release", self.release.is_some()),

@@ -135,6 +135,7 @@ impl Writer {
         self.optional("set_velocity", &command.set_velocity);
         self.optional("set_force", &command.set_force);
         self.optional("set_material", &command.set_material);
+        self.optional("set_gravity_scale", &command.set_gravity_scale);
         self.optional("set_kind", &command.set_kind);
         self.optional("hold", &command.hold);
         self.optional("release", &command.release);

@@ -384,6 +384,13 @@ const TOML: &[Bad] = &[
         says: &["from 0 to 10000"],
     },
     Bad {
+        what: "factor on gravity that is no number",
+        text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\nset_gravity_scale = { body = 0, scale = inf }\n",
+        line: 6,
+        field: "commands[0].set_gravity_scale.scale",
+        says: &["a finite number, is inf"],
+    },
+    Bad {
         what: "hold without stiffness",
         text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\n[commands.hold]\nbody = 0\ntarget = [0, 0, 0]\nfrequency_hz = 0\n",
         line: 9,

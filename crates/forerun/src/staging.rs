@@ -136,9 +136,29 @@ fn change_of(command: SceneCommand) -> Change {
             Change::SetForce { body: BodyId(body), force, torque }
         }
         SceneCommand::SetMaterial { body, material } => Change::SetMaterial { body: BodyId(body), material },
+        SceneCommand::SetGravityScale { body, scale } => {
+            Change::SetGravityScale { body: BodyId(body), scale }
+        }
         SceneCommand::SetKind { body, kind } => Change::SetKind { body: BodyId(body), kind },
         SceneCommand::Hold { body, spring } => Change::Hold { body: BodyId(body), spring },
         SceneCommand::Release { body } => Change::Release { body: BodyId(body) },
         SceneCommand::SetGravity { gravity } => Change::SetGravity { gravity },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use forerun_scene::Format;
+
+    #[test]
+    fn a_factor_on_gravity_in_a_scene_reaches_the_timeline() {
+        let text = "name = 'up'\n[[bodies]]\nshape = { sphere = { radius = 1 } }\n\
+                    [[commands]]\nframe = 1\nset_gravity_scale = { body = 0, scale = -1 }\n";
+        let scene = Scene::parse(text, Format::Toml, "up").expect("a possible scene");
+        let mut timeline = timeline_of(&scene, TimelineSettings::default()).expect("a possible scene");
+        while timeline.advance() != forerun_timeline::Progress::Idle {}
+        let velocity = |frame| timeline.state(BodyId(0), Frame(frame)).expect("it is there").velocity.y;
+        assert!(velocity(1) < 0.0 && velocity(60) > 9.0, "{} and {} m/s", velocity(1), velocity(60));
     }
 }
