@@ -87,6 +87,8 @@ fn run_writes_a_row_per_picture_a_report_and_charts() {
         "queue_max",
         "slices_max",
         "recomputed",
+        "quarantined",
+        "ignored",
     ];
     let mut expected = fields.to_vec();
     let mut found = keys(&report);
@@ -107,6 +109,18 @@ fn run_writes_a_row_per_picture_a_report_and_charts() {
         let bytes = std::fs::metadata(out.join(chart)).map_or(0, |file| file.len());
         assert!(bytes > 2000, "{chart} has {bytes} bytes");
     }
+}
+
+#[test]
+fn degraded_results_are_printed_where_there_are_any() {
+    let file = folder("degraded").join("odd.toml");
+    let scene = "name = \"odd\"\n[[bodies]]\nshape = { sphere = { radius = 1 } }\nmass = 0.001\nforce = [3e38, 0, 0]\n";
+    std::fs::write(&file, scene).expect("writes");
+    let output = forerun(&["run", file.to_str().expect("a plain path"), "--seconds", "0.2"]);
+    assert_eq!(code(&output), Some(0), "{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    assert!(printed.contains("states that were not finite"), "{printed}");
+    assert!(!printed.contains("commands that did nothing"), "{printed}");
 }
 
 #[test]

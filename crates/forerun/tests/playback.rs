@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use forerun::scene::Format;
+
 use forerun::{
     Clock, DriverKind, Playback, PlaybackError, PlaybackSettings, Scene, Threads, TimelineSettings, play,
     timeline_of,
@@ -55,6 +57,33 @@ fn impossible_lengths_and_rates_are_refused() {
         refused(1.0, bad, "fps");
     }
     refused(1.0, 1e-300, "fps");
+}
+
+#[test]
+fn degraded_results_are_in_the_report() {
+    let text = "name = 'odd'\n\
+                [[bodies]]\nshape = { sphere = { radius = 1 } }\n\
+                [[bodies]]\nshape = { sphere = { radius = 1 } }\nposition = [9, 0, 0]\nmass = 0.001\nforce = [3e38, 0, 0]\n\
+                [[commands]]\nframe = 2\nremove = 0\n\
+                [[commands]]\nframe = 4\npush = { body = 0, impulse = [1, 0, 0] }\n";
+    let mut scene = Scene::parse(text, Format::Toml, "odd").expect("a possible scene");
+    let report = |scene: &Scene, driver| {
+        let clock = Clock::by_hand();
+        let turned = clock.clone();
+        let settings = PlaybackSettings { driver, seconds: 1.0, fps: FPS, ..PlaybackSettings::default() };
+        let played = play(scene, &settings, &clock, &mut |_| {
+            turned.turn(interval(0));
+            // Physics has a thread of its own, and time to hear of what this picture brought.
+            std::thread::sleep(Duration::from_millis(2));
+        });
+        played.expect("it plays").report
+    };
+    let decoupled = report(&scene, DriverKind::Decoupled);
+    assert!(decoupled.quarantined > 0 && decoupled.ignored == 1, "{decoupled:?}");
+    // The traditional model removes nobody.
+    scene.commands.clear();
+    let coupled = report(&scene, DriverKind::Coupled);
+    assert!(coupled.quarantined > 0 && coupled.ignored == 0, "{coupled:?}");
 }
 
 #[test]

@@ -105,5 +105,12 @@ fn print_result(report: &Report, files: &[PathBuf]) -> Result<(), Failure> {
     print(&format!("  states in the queue          {:>8} to {}", report.queue_min, report.queue_max))?;
     print(&format!("  most slices of a frame       {:>8}", report.slices_max))?;
     print(&format!("  states computed again        {:>8}", report.recomputed))?;
+    for (what, count) in
+        [("states that were not finite", report.quarantined), ("commands that did nothing", report.ignored)]
+    {
+        if count > 0 {
+            print(&format!("  {what:<28} {count:>8}"))?;
+        }
+    }
     files.iter().try_for_each(|file| print(&format!("wrote {}", file.display())))
 }

@@ -54,6 +54,10 @@ pub fn play(
         rows.push(row);
         due = (due + interval).max(clock.now() - start);
     }
-    let report = Report::new(&scene.name, settings.driver.name(), settings.fps, &rows);
+    let report = Report {
+        quarantined: show.quarantined(),
+        ignored: show.ignored(),
+        ..Report::new(&scene.name, settings.driver.name(), settings.fps, &rows)
+    };
     Ok(Playback { rows, report, last_poses: show.poses() })
 }

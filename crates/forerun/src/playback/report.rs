@@ -34,10 +34,14 @@ pub struct Report {
     pub slices_max: u32,
     /// States that were computed again.
     pub recomputed: u64,
+    /// Bodies that were stopped because their next state was not finite, each time it happened.
+    pub quarantined: u64,
+    /// Commands that did nothing: their body was not there, or the result would not have been finite.
+    pub ignored: u64,
 }
 
 impl Report {
-    /// Sums up the rows of a playback of `fps` pictures per second.
+    /// Sums up the rows of a playback of `fps` pictures per second. What no row has, `quarantined` and `ignored`, is left 0.
     #[must_use]
     pub fn new(scene: &str, driver: &str, fps: f64, rows: &[QueueRow]) -> Self {
         let late_ms = 1000.0 * LATE_INTERVALS / fps;
@@ -56,6 +60,8 @@ impl Report {
             queue_max: rows.iter().map(|row| row.queue_max).max().unwrap_or(0),
             slices_max: rows.iter().map(|row| row.slices_max).max().unwrap_or(1),
             recomputed: rows.iter().map(|row| row.recomputed).sum(),
+            quarantined: 0,
+            ignored: 0,
         }
     }
 }

@@ -34,8 +34,13 @@ impl Show {
             DriverKind::Coupled => {
                 let driver = Coupled::new(world_of(scene)?, clock.clone(), threads, StepLimits::default())?
                     .with_slow_down(settings.slow_down);
-                let frame_seconds = f64::from(scene.frame_seconds);
-                Ok(Show::Coupled(CoupledShow { driver, script, scene: scene.name.clone(), frame_seconds }))
+                Ok(Show::Coupled(CoupledShow {
+                    driver,
+                    script,
+                    scene: scene.name.clone(),
+                    frame_seconds: f64::from(scene.frame_seconds),
+                    quarantined: 0,
+                }))
             }
         }
     }
@@ -45,6 +50,25 @@ impl Show {
         match self {
             Show::Decoupled(show) => show.picture(real.as_secs_f64()),
             Show::Coupled(show) => show.picture(),
+        }
+    }
+
+    /// Bodies that were stopped because their next state was not finite, each time it happened.
+    pub(super) fn quarantined(&self) -> u64 {
+        match self {
+            Show::Decoupled(show) => {
+                let stats = show.driver.last_picture().stats;
+                stats.ahead.quarantined + stats.edits.quarantined
+            }
+            Show::Coupled(show) => show.quarantined,
+        }
+    }
+
+    /// Commands that did nothing. The coupled driver has none: what it cannot do is an error.
+    pub(super) fn ignored(&self) -> u64 {
+        match self {
+            Show::Decoupled(show) => show.driver.last_picture().stats.ignored,
+            Show::Coupled(_) => 0,
         }
     }
 
@@ -145,6 +169,7 @@ pub(super) struct CoupledShow {
     script: VecDeque<TimedChange>,
     scene: String,
     frame_seconds: f64,
+    quarantined: u64,
 }
 
 impl CoupledShow {
@@ -158,6 +183,7 @@ impl CoupledShow {
         }
         let before_s = self.driver.time_s();
         let report = self.driver.show();
+        self.quarantined += u64::from(report.quarantined);
         let slices_max = report.slices_max.max(1);
         let time_s = self.driver.time_s();
         Ok(QueueRow {
