@@ -10,7 +10,7 @@ use crate::Frame;
 /// How one frame was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameNote {
-    /// Most slices that an island's frame was cut into; 1 when none was.
+    /// Most slices that an island's frame was cut into, any time that it was computed; 1 when none was.
     pub slices_max: u8,
     /// Areas in which a body moved.
     pub areas_active: u32,
@@ -32,9 +32,12 @@ impl FrameNotes {
         FrameNotes { ring: (0..frames.max(1)).map(|_| AtomicU64::new(0)).collect() }
     }
 
+    /// Only the physics thread writes. A frame that is computed again keeps the most slices: those islands that were cut may not have been among
+    /// those computed again.
     pub(crate) fn write(&self, frame: Frame, note: FrameNote) {
         let areas = u64::from(note.areas_active.min((1 << AREAS_BITS) - 1));
-        let slices = u64::from(note.slices_max.max(1));
+        let before = self.read(frame).map_or(1, |before| before.slices_max);
+        let slices = u64::from(note.slices_max.max(before));
         let word = tag(frame) << (AREAS_BITS + SLICES_BITS) | slices << AREAS_BITS | areas;
         // The word says all there is to say, so it needs no order with other memory.
         self.ring[self.place(frame)].store(word, Ordering::Relaxed);
@@ -59,6 +62,16 @@ fn tag(frame: Frame) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_frame_that_is_computed_again_keeps_its_most_slices() {
+        let notes = FrameNotes::with_capacity(4);
+        notes.write(Frame(2), FrameNote { slices_max: 8, areas_active: 77 });
+        notes.write(Frame(2), FrameNote { slices_max: 2, areas_active: 5 });
+        assert_eq!(notes.read(Frame(2)), Some(FrameNote { slices_max: 8, areas_active: 5 }));
+        notes.write(Frame(6), FrameNote { slices_max: 2, areas_active: 5 });
+        assert_eq!(notes.read(Frame(6)), Some(FrameNote { slices_max: 2, areas_active: 5 }));
+    }
 
     #[test]
     fn a_note_is_read_as_written_until_the_ring_comes_round() {
