@@ -21,6 +21,8 @@ const SAME_FRAME: f64 = 1e-9;
 pub enum Certainty {
     /// From states that are known to be true for all commands accepted before the snapshot.
     Exact,
+    /// From stored states that nothing has put out of date yet, after a frame at which other bodies wait to be recomputed: those may still reach this one.
+    Presumed,
     /// Physics has not yet recomputed the body so far: it goes on at its last velocity for a few frames.
     Extrapolated,
     /// Physics is late: the last state that is known, held.
@@ -193,7 +195,8 @@ impl Snapshot {
             }
             _ => *state,
         };
-        Some(sample_of(body, &shown, Certainty::Exact))
+        let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
+        Some(sample_of(body, &shown, if beyond { Certainty::Presumed } else { Certainty::Exact }))
     }
 
     /// A body after the last frame at which it is known.

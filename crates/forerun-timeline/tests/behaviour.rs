@@ -331,7 +331,9 @@ fn what_waits_to_be_recomputed_goes_on_and_then_holds() {
     assert_eq!(certainty(3, 19.0), Certainty::Exact);
     assert_eq!(certainty(3, 20.5), Certainty::Extrapolated);
     assert_eq!(certainty(3, 25.0), Certainty::Held);
-    assert_eq!(certainty(9, 25.0), Certainty::Exact);
+    assert_eq!(certainty(9, 19.0), Certainty::Exact);
+    assert_eq!(certainty(9, 19.5), Certainty::Presumed);
+    assert_eq!(certainty(9, 25.0), Certainty::Presumed);
     let areas = timeline.area_clocks();
     assert!(!areas.is_empty() && areas.iter().all(|(_, clock)| *clock == Frame(19)));
     let _ = timeline.advance();

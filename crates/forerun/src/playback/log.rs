@@ -19,7 +19,7 @@ pub struct QueueRow {
     pub queue_max: u32,
     /// The fewest right after a command came since the picture before; else the same as `queue_min`.
     pub queue_low: u32,
-    /// Bodies that had no true state for the display time, and were shown as they last were.
+    /// Bodies whose state for the display time was not stored or known to be out of date, so that they were shown as they last were.
     pub starved: u32,
     /// Most slices that an island of the displayed frame was cut into (the dissertation's return in time); 1 when none was.
     pub slices_max: u32,

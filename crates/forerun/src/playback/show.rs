@@ -118,7 +118,7 @@ impl DecoupledShow {
         let picture = self.driver.show(real_s)?;
         let snapshot = &picture.snapshot;
         snapshot.sample_all(picture.time_s, &mut self.samples);
-        let starved = self.samples.iter().filter(|(_, s)| s.certainty != Certainty::Exact).count();
+        let starved = self.samples.iter().filter(|(_, s)| s.certainty > Certainty::Presumed).count();
         let physics_s = snapshot.valid_to().seconds(snapshot.frame_seconds());
         let slices_max = picture.note.map_or(1, |note| u32::from(note.slices_max));
         let (ahead, edits) = (picture.stats.ahead.recomputed, picture.stats.edits.recomputed);
