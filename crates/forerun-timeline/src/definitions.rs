@@ -123,6 +123,11 @@ impl Definitions {
         }
     }
 
+    /// Whether another gravity held only before `oldest`.
+    pub(crate) fn has_gravity_before(&self, oldest: Frame) -> bool {
+        self.environments.get(1).is_some_and(|(from, _)| *from <= oldest)
+    }
+
     /// Forgets what held only before `oldest`.
     pub(crate) fn forget_before(&mut self, oldest: Frame, bodies: impl Iterator<Item = BodyId>) {
         drop_before(&mut self.environments, oldest);

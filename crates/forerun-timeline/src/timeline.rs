@@ -172,7 +172,10 @@ impl Timeline {
         self.tables.drain(..dropped);
         self.oldest = oldest;
         let commanded = self.log.forget_to(oldest);
-        Arc::make_mut(&mut self.definitions).forget_before(oldest, commanded.into_iter());
+        // Snapshots share the definitions: to touch them is to copy them, so only where there is something to forget.
+        if !commanded.is_empty() || self.definitions.has_gravity_before(oldest) {
+            Arc::make_mut(&mut self.definitions).forget_before(oldest, commanded.into_iter());
+        }
         let kept = self.effects.split_off(&oldest.next());
         let forgotten = std::mem::replace(&mut self.effects, kept);
         self.stats.ignored += ignored(&forgotten);
@@ -343,3 +346,33 @@ impl std::fmt::Display for TimelineError {
 }
 
 impl std::error::Error for TimelineError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Progress;
+    use forerun_geometry::Vec3;
+    use forerun_geometry::shape::{Shape, Sphere};
+
+    #[test]
+    fn definitions_are_copied_only_where_there_is_something_to_forget() {
+        let bodies = [BodyDef::new(Shape::Sphere(Sphere { radius: 0.5 }))];
+        let settings = TimelineSettings { lookahead: 20, past: 2, area_m: None };
+        let mut timeline = Timeline::new(&bodies, Environment::default(), settings).unwrap();
+        timeline.change(Frame(8), Change::SetGravity { gravity: Vec3::X }).unwrap();
+        timeline.change(Frame(10), Change::SetGravityScale { body: BodyId(0), scale: 0.5 }).unwrap();
+        while timeline.advance() != Progress::Idle {}
+        let mut copied = Vec::new();
+        for display in 1..16 {
+            let snapshot = timeline.snapshot();
+            let before = Arc::clone(&timeline.definitions);
+            timeline.set_display(Frame(display));
+            if !Arc::ptr_eq(&before, &timeline.definitions) {
+                copied.push(timeline.oldest().0);
+            }
+            drop(snapshot);
+        }
+        assert_eq!(copied, [8, 10]);
+        assert_eq!(timeline.environment_at(Frame(13)).gravity, Vec3::X);
+    }
+}
