@@ -6,6 +6,7 @@ use std::process::ExitCode;
 mod files;
 mod floors;
 mod golden;
+mod links;
 mod map;
 mod rooms;
 mod tidy;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
-use crate::{files, floors, map, rooms};
+use crate::{files, floors, links, map, rooms};
 
 /// A rule that is not kept, and where.
 #[derive(Debug, PartialEq, Eq)]
@@ -43,6 +43,9 @@ pub(crate) fn complaints(root: &Path) -> io::Result<Vec<Complaint>> {
     }
     if let Some(file) = files.iter().find(|file| file.path == map::FILE) {
         complaints.extend(map::check(&file.read(root)?, &files));
+    }
+    for page in files.iter().filter(|file| links::PAGES.contains(&file.path.as_str())) {
+        complaints.extend(links::check(&page.path, &page.read(root)?, &files));
     }
     Ok(complaints)
 }
