@@ -48,6 +48,8 @@ pub(crate) struct Arrival<'a> {
     pub(crate) stored: &'a FrameTable,
     /// Until when visits at the frame hold.
     pub(crate) until: Until,
+    /// Whether the areas are not trusted to name who is near.
+    pub(crate) ask_everybody: bool,
 }
 
 impl Arrival<'_> {
@@ -121,7 +123,7 @@ impl Arrival<'_> {
         for effect in effects.values_mut().filter(|effect| effect.obeyed) {
             let bounds: Vec<Aabb> = effect.before.into_iter().chain(effect.after).collect();
             let mut near = Vec::new();
-            if !areas.near(self.frame, &bounds, &mut near) {
+            if self.ask_everybody || !areas.near(self.frame, &bounds, &mut near) {
                 near = (0..self.definitions.names() as u32).map(BodyId).collect();
             }
             near.sort_unstable();

@@ -9,7 +9,7 @@ use crate::timeline::{Counters, Timeline};
 use crate::{Change, Command, CommandError, CommandKey, Frame};
 
 /// How far the id of an added body may be ahead of the names in use: ids index memory.
-const NAMES_AHEAD: usize = 65_536;
+pub(crate) const NAMES_AHEAD: usize = 65_536;
 
 impl Timeline {
     /// Accepts a command for a frame after the oldest. It acts when its frame is next computed: call [`Timeline::advance`]. A command to

@@ -44,6 +44,7 @@ mod effect;
 pub mod frame;
 mod frame_table;
 mod hearing;
+mod random_change;
 mod sample;
 pub mod snapshot;
 mod stale;

@@ -106,6 +106,7 @@ impl Timeline {
             definitions: &definitions,
             stored: &stored,
             until: if is_last { Until::FurtherNotice } else { Until::NextFrame },
+            ask_everybody: self.recompute_all,
         };
         let entries = entries(&group, &next, out_of_date);
         let mut effects = self.effects.remove(&arrival).unwrap_or_default();

@@ -3,7 +3,7 @@
 use std::num::NonZeroU16;
 
 use forerun::timeline::check::{
-    CheckMoment, CheckReport, CheckSettings, Mismatch, check, full_run, mismatches,
+    CheckMoment, CheckReport, CheckSettings, FullRunError, Mismatch, check, full_run, mismatches,
 };
 use forerun::{BodyDef, Clock, Environment, Scene, Threads, Timeline};
 use serde::Serialize;
@@ -107,8 +107,12 @@ fn check_timed(
             CheckMoment::FullEnds => times.full_ms.push(passed_ms),
         }
     });
-    let report = report.map_err(|error| Failure::Input(format!("{}: {error}", scene.name)))?;
-    Ok((report, times))
+    match report {
+        Ok(report) => Ok((report, times)),
+        Err(error @ FullRunError::Start(_)) => Err(Failure::Input(format!("{}: {error}", scene.name))),
+        // The timeline accepted the command: they are not of one mind, which is what is checked.
+        Err(error @ FullRunError::Command(_)) => Err(Failure::Check(format!("{}: {error}", scene.name))),
+    }
 }
 
 /// The scene without edits, to compare thread counts with each other.

@@ -10,7 +10,7 @@ use forerun_timeline::Change;
 use super::direct_change::{ChangeError, apply};
 use super::driver_error::DriverError;
 use crate::dynamics::{StepReport, Unobserved, World};
-use crate::{Clock, Threads};
+use crate::{BodyState, Clock, Threads};
 
 /// Between which lengths a time step is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,8 +88,11 @@ impl Coupled {
             return StepReport { slices_max: 1, ..StepReport::default() };
         };
         let step_s = (now.saturating_sub(before)).as_secs_f64().clamp(self.limits.min_s, self.limits.max_s);
-        self.world.environment.settings.frame_seconds = step_s as f32;
         let world = &mut self.world;
+        let before = world.environment.settings.rest_frames();
+        world.environment.settings.frame_seconds = step_s as f32;
+        let full = world.environment.settings.rest_frames();
+        recount_rest(world.states_mut(), before, full);
         let report = self.threads.install(|| world.step(&mut Unobserved));
         if !self.slow_down.is_zero() {
             self.clock.wait_until(self.clock.now() + self.slow_down);
@@ -125,10 +128,26 @@ impl Coupled {
     }
 }
 
+/// Rest is counted in frames, and these have another length now: as much of the wait for rest is over as was before, and what is at rest stays so.
+fn recount_rest(states: &mut [BodyState], full_before: u32, full: u32) {
+    if full == full_before || full_before == 0 {
+        return;
+    }
+    for state in states {
+        state.rest = if state.rest >= full_before {
+            full + u32::from(state.rest > full_before)
+        } else {
+            // Rounded to nearest, so that lengths which vary to and fro take nothing away.
+            let scaled = u64::from(state.rest) * u64::from(full) + u64::from(full_before / 2);
+            ((scaled / u64::from(full_before)) as u32).min(full.saturating_sub(1))
+        };
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BodyDef, Environment, Shape, Sphere, Vec3};
+    use crate::{BodyDef, Cuboid, Environment, Shape, Sphere, Vec3};
 
     fn coupled(clock: &Clock) -> Coupled {
         let mut world = World::new(Environment::default());
@@ -176,6 +195,37 @@ mod tests {
             let before = driver.time_s();
             driver.show();
             assert!((1000.0 * (driver.time_s() - before) - step_ms).abs() < 1e-9, "cycle of {cycle_ms} ms");
+        }
+    }
+
+    #[test]
+    fn rest_is_a_matter_of_time_and_not_of_how_many_frames_it_took() {
+        let clock = Clock::by_hand();
+        let mut world = World::default();
+        world.add(&BodyDef::fixed(Shape::HalfSpace)).expect("the ground");
+        let cube = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) });
+        world.add(&BodyDef::new(cube).at(Vec3::Y * 0.5)).expect("a plain cube");
+        world.environment.settings.overlap_allowed_m = 0.0;
+        let threads = Threads::all().expect("threads");
+        let mut driver =
+            Coupled::new(world, clock.clone(), threads, StepLimits::default()).expect("defaults");
+        let cycles = |driver: &mut Coupled, count: u32, millis: u64| {
+            for _ in 0..count {
+                clock.turn(Duration::from_millis(millis));
+                driver.show();
+            }
+            let rest = driver.world().states()[1].rest;
+            (rest, driver.world().environment.settings.rest_frames())
+        };
+        // A tenth of a second of quiet is a twentieth of what it takes, however few frames that now is.
+        cycles(&mut driver, 101, 1);
+        let (rest, full) = cycles(&mut driver, 1, 42);
+        assert!((2..=4).contains(&rest), "{rest} of {full}");
+        let (rest, full) = cycles(&mut driver, 200, 20);
+        assert_eq!(rest, full + 1, "at rest");
+        for millis in [21, 17, 30, 1] {
+            let (rest, full) = cycles(&mut driver, 1, millis);
+            assert_eq!(rest, full + 1, "still at rest in a cycle of {millis} ms");
         }
     }
 

@@ -46,7 +46,6 @@ pub(super) fn apply(world: &mut World, change: &Change) -> Result<(), ChangeErro
         Change::SetGravity { gravity } => {
             change.check_numbers().map_err(ChangeError::Refused)?;
             world.environment.gravity = *gravity;
-            world.states_mut().iter_mut().for_each(|state| state.rest = 0);
         }
         Change::Move { body, .. }
         | Change::Push { body, .. }
@@ -57,6 +56,8 @@ pub(super) fn apply(world: &mut World, change: &Change) -> Result<(), ChangeErro
         | Change::SetForce { body, .. }
         | Change::SetGravityScale { body, .. } => change_body(world, *body, change)?,
     }
+    // Who rests on the changed body, or is now in its way, is not found out here: all wake, and those who may rest again soon.
+    world.states_mut().iter_mut().for_each(|state| state.rest = 0);
     Ok(())
 }
 
@@ -74,7 +75,8 @@ fn change_body(world: &mut World, id: BodyId, change: &Change) -> Result<(), Cha
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BodyDef, Cuboid, Environment, Shape, Vec3};
+    use crate::dynamics::Unobserved;
+    use crate::{BodyDef, Cuboid, Environment, Pose, Shape, Vec3};
 
     fn world() -> World {
         let mut world = World::new(Environment::default());
@@ -93,6 +95,28 @@ mod tests {
         // m = 1000 kg, I = 1000/6 kg m²; r × J = 0.5 * 600 about z
         assert!((state.velocity - Vec3::Y * 0.6).length() < 1e-6);
         assert!((state.angular_velocity - Vec3::Z * 1.8).length() < 1e-5);
+    }
+
+    #[test]
+    fn what_rested_on_a_body_falls_when_that_is_moved_away() {
+        let mut world = World::default();
+        world.environment.settings.rest_seconds = 0.1;
+        let cube = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) });
+        world.add(&BodyDef::fixed(Shape::HalfSpace)).expect("the ground");
+        for y in [0.5, 1.5] {
+            world.add(&BodyDef::new(cube.clone()).at(Vec3::Y * y)).expect("a plain cube");
+        }
+        let steps = |world: &mut World, count: u32| {
+            for _ in 0..count {
+                world.step(&mut Unobserved);
+            }
+        };
+        steps(&mut world, 120);
+        assert!(world.states()[2].rest > world.environment.settings.rest_frames(), "{:?}", world.states());
+        let pose = Pose { position: Vec3::new(9.0, 0.5, 0.0), ..Pose::IDENTITY };
+        assert_eq!(apply(&mut world, &Change::Move { body: BodyId(1), pose }), Ok(()));
+        steps(&mut world, 20);
+        assert!(world.states()[2].position.y < 1.3, "{:?}", world.states()[2]);
     }
 
     #[test]
