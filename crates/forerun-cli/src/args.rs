@@ -26,7 +26,7 @@ pub(crate) enum Command {
     Scenes(ScenesArgs),
     /// Edit a scene at random and compare every state with a full re-simulation, bit for bit (its own commands are left out)
     Check(CheckArgs),
-    /// Measure the step on scenes, with guards on its quality (their commands are left out)
+    /// Measure the step on scenes, and the quality that its time was paid for (their commands are left out)
     Bench(BenchArgs),
     /// Compare with formulas and measurements from the literature
     Validate(ValidateArgs),
@@ -56,9 +56,9 @@ pub(crate) enum DriverArg {
 pub(crate) struct RunArgs {
     #[arg(help = SCENE_HELP)]
     pub(crate) scene: String,
-    /// Length in seconds of real time
-    #[arg(long, default_value = "10", value_parser = seconds, allow_negative_numbers = true)]
-    pub(crate) seconds: f64,
+    /// Length in seconds of real time [default: the scene's]
+    #[arg(long, value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) seconds: Option<f64>,
     /// Who steps the physics
     #[arg(long, value_enum, default_value = "decoupled")]
     pub(crate) driver: DriverArg,

@@ -26,7 +26,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             DriverArg::Decoupled => DriverKind::Decoupled,
             DriverArg::Coupled => DriverKind::Coupled,
         },
-        seconds: args.seconds,
+        seconds: args.seconds.unwrap_or(f64::from(scene.seconds)),
         fps: args.fps,
         lookahead: args.lookahead,
         threads: args.threads.and_then(NonZeroU16::new),

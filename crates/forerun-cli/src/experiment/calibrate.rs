@@ -9,8 +9,8 @@ use crate::failure::Failure;
 const BODIES_MIN: u32 = 60;
 /// How much the impact is to be slower than the longest step of the traditional model.
 const MARGIN: f64 = 1.25;
-/// Mean cost over the length of a frame, at most.
-const LOAD_MAX: f64 = 0.75;
+/// Mean cost over the length of a frame, at most: the other half is for the display, and for whatever else the machine does.
+const LOAD_MAX: f64 = 0.5;
 const ROUNDS_MAX: u32 = 8;
 
 /// What the calibration found.

@@ -23,6 +23,10 @@ use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
 /// An island is hard when the load pass leaves more than this part of its weight to the sweeps: stacks and pyramids leave none, a heap most of it.
 const HARD_PART: f64 = 0.1;
 
+/// So many more passes push the overlap out of hard islands. Of 1000 bodies poured into a pit the worst two overlapped by 103 mm without them
+/// and by 10 mm with them, at a cost of 4 %.
+const HARD_PUSHES: usize = 2;
+
 /// Some islands, with the bodies that do not yield but that they touch.
 pub(crate) struct Batch<'a> {
     /// Sorted by id.
@@ -195,6 +199,10 @@ impl<'a> Batch<'a> {
         let push_max = settings.recovery_speed_max * settings.frame_seconds;
         for _ in 0..self.pushes() {
             propagate_shock(&mut self.blocks, &mut self.bodies.displacements, &settings, push_max);
+        }
+        let hard = &mut self.blocks[self.easy_blocks..];
+        for _ in 0..HARD_PUSHES {
+            propagate_shock(hard, &mut self.bodies.displacements, &settings, push_max);
         }
     }
 
