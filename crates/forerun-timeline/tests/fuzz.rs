@@ -1,0 +1,240 @@
+//! Fuzz: whatever is done to a timeline, in whatever order and with whatever numbers, nothing panics, what is refused changes nothing,
+//! every state has the bits of a full run, and when everything is taken back the timeline is as it was at first.
+//!
+//! A failure is shrunk to the shortest session that still fails. More sessions, or others:
+//! `FORERUN_FUZZ_SESSIONS=10000 FORERUN_FUZZ_SEED=7 cargo test -p forerun-timeline --test fuzz`.
+
+mod edits;
+
+use std::collections::BTreeMap;
+
+use edits::{At, Edit, Session, What, session};
+use forerun_dynamics::{BodyDef, Environment};
+use forerun_geometry::Shape;
+use forerun_timeline::check::{full_run, mismatches};
+use forerun_timeline::{
+    Change, Command, CommandError, CommandKey, Frame, Progress, Timeline, TimelineSettings,
+};
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
+
+/// The display goes no further: full runs are to stay short.
+const LAST_DISPLAY: u64 = 60;
+
+/// A timeline and what is known of it.
+#[derive(Clone)]
+struct Run {
+    timeline: Timeline,
+    /// All commands in force, the forgotten ones too.
+    commands: BTreeMap<CommandKey, Change>,
+}
+
+/// A session under way.
+struct Fuzz {
+    bodies: Vec<BodyDef>,
+    environment: Environment,
+    run: Run,
+    forks: Vec<Run>,
+    sequence: u64,
+}
+
+impl Fuzz {
+    fn new(session: &Session) -> Option<Fuzz> {
+        let ground = BodyDef::fixed(Shape::HalfSpace);
+        let bodies: Vec<BodyDef> =
+            std::iter::once(ground).chain(session.bodies.iter().map(|spec| spec.def())).collect();
+        let mut environment = Environment::default();
+        if session.restful {
+            environment.settings.rest_seconds = 0.1;
+        }
+        let settings = TimelineSettings {
+            lookahead: session.lookahead,
+            past: session.past,
+            ..TimelineSettings::default()
+        };
+        let timeline = Timeline::new(&bodies, environment, settings).ok()?;
+        let run = Run { timeline, commands: BTreeMap::new() };
+        Some(Fuzz { bodies, environment, run, forks: Vec::new(), sequence: 0 })
+    }
+
+    fn act(&mut self, edit: &Edit) -> Result<(), String> {
+        match edit {
+            Edit::Submit { at, source, change } => self.submit(*at, *source, change)?,
+            Edit::Again(index) => self.again(*index)?,
+            Edit::Retract(index) => self.retract(*index)?,
+            Edit::Advance(frames) => {
+                for _ in 0..*frames {
+                    let _ = self.run.timeline.advance();
+                }
+            }
+            Edit::Finish => finish(&mut self.run.timeline),
+            Edit::Display(frames) => {
+                let display = self.run.timeline.display().0.saturating_add_signed(i64::from(*frames));
+                self.run.timeline.set_display(Frame(display.min(LAST_DISPLAY)));
+            }
+            Edit::SaveAndLoad(_) => {}
+            Edit::Fork if self.forks.len() < 3 => self.forks.push(self.run.clone()),
+            Edit::Fork => {}
+            Edit::Swap(index) => {
+                let count = self.forks.len().max(1);
+                if let Some(fork) = self.forks.get_mut(usize::from(*index) % count) {
+                    std::mem::swap(fork, &mut self.run);
+                }
+            }
+            Edit::Compare => self.compare(&self.run)?,
+        }
+        let (valid_to, horizon) = (self.run.timeline.valid_to(), self.run.timeline.horizon());
+        ensure(self.run.timeline.oldest() <= valid_to && valid_to <= horizon, || {
+            format!("true up to {valid_to}, horizon {horizon}")
+        })
+    }
+
+    fn submit(&mut self, at: At, source: u32, what: &What) -> Result<(), String> {
+        let timeline = &mut self.run.timeline;
+        let frame = frame_of(at, timeline);
+        let change = what.change(timeline.names());
+        self.sequence += 1;
+        let key = CommandKey { frame, source, sequence: self.sequence };
+        let before = summary(timeline);
+        let names = timeline.names();
+        match timeline.submit(Command { key, change: change.clone() }) {
+            Ok(()) => {
+                ensure(frame > timeline.oldest(), || format!("{key:?} is too old and was accepted"))?;
+                ensure(what.is_finite(), || format!("{change:?} was accepted"))?;
+                ensure(!matches!(what, What::AddAgain(..)), || format!("{change:?} was accepted"))?;
+                self.run.commands.insert(key, change);
+            }
+            Err(error) => {
+                let expected = match (&error, what) {
+                    (CommandError::TooOld { .. }, _) => frame <= timeline.oldest(),
+                    (_, What::AddAgain(..)) => true,
+                    // The ground bounds no volume.
+                    (_, What::SetKind(body, _)) => usize::from(*body) % names == 0,
+                    _ => !what.is_plain(),
+                };
+                ensure(expected, || format!("{change:?} for {frame} was refused: {error}"))?;
+                ensure(before == summary(timeline), || format!("refusing {change:?} changed something"))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn again(&mut self, index: u8) -> Result<(), String> {
+        let Some((key, change)) = pick(&self.run.commands, index) else { return Ok(()) };
+        let timeline = &mut self.run.timeline;
+        let before = summary(timeline);
+        let refused = timeline.submit(Command { key, change });
+        let expected = match refused {
+            Err(CommandError::DuplicateKey(_)) => key.frame > timeline.oldest(),
+            Err(CommandError::TooOld { .. }) => key.frame <= timeline.oldest(),
+            _ => false,
+        };
+        ensure(expected, || format!("{key:?} was sent twice: {refused:?}"))?;
+        ensure(before == summary(timeline), || format!("refusing {key:?} changed something"))
+    }
+
+    fn retract(&mut self, index: u8) -> Result<(), String> {
+        let Some((key, _)) = pick(&self.run.commands, index) else { return Ok(()) };
+        let kept = key.frame > self.run.timeline.oldest();
+        let done = self.run.timeline.retract(&key);
+        ensure(done == kept, || format!("retracting {key:?}: {done}"))?;
+        if done {
+            self.run.commands.remove(&key);
+        }
+        Ok(())
+    }
+
+    /// All that is known to be true has the bits of a full run.
+    fn compare(&self, run: &Run) -> Result<(), String> {
+        let timeline = &run.timeline;
+        let commands = run.commands.iter().map(|(key, change)| Command { key: *key, change: change.clone() });
+        let frames = timeline.valid_to().0.max(1) as u32;
+        let full = full_run(&self.bodies, commands, self.environment, frames)
+            .map_err(|error| format!("no full run: {error}"))?;
+        match mismatches(timeline, &full).1.filter(|first| first.frame <= timeline.valid_to()) {
+            Some(first) => Err(format!("true up to {}: {first}", timeline.valid_to())),
+            None => Ok(()),
+        }
+    }
+
+    /// Everything is worked off and compared; then all is taken back.
+    fn end(mut self) -> Result<(), String> {
+        let forks = std::mem::take(&mut self.forks);
+        for mut run in forks.into_iter().chain([self.run.clone()]) {
+            finish(&mut run.timeline);
+            self.compare(&run)?;
+            let finite = |frame: Frame| {
+                let bodies = run.timeline.bodies_at(frame);
+                bodies.iter().all(|body| run.timeline.state(*body, frame).is_some_and(|s| s.is_finite()))
+            };
+            let (oldest, horizon) = (run.timeline.oldest(), run.timeline.horizon());
+            ensure((oldest.0..=horizon.0).map(Frame).all(finite), || "a state is not finite".to_owned())?;
+            if oldest == Frame(0) {
+                for (key, _) in std::mem::take(&mut run.commands) {
+                    ensure(run.timeline.retract(&key), || format!("{key:?} cannot be taken back"))?;
+                }
+                finish(&mut run.timeline);
+                self.compare(&run).map_err(|error| format!("after taking back everything: {error}"))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn pick(commands: &BTreeMap<CommandKey, Change>, index: u8) -> Option<(CommandKey, Change)> {
+    let count = commands.len().max(1);
+    commands.iter().nth(usize::from(index) % count).map(|(key, change)| (*key, change.clone()))
+}
+
+fn frame_of(at: At, timeline: &Timeline) -> Frame {
+    let first = timeline.oldest().0 + 1;
+    match at {
+        At::TooOld => timeline.oldest(),
+        At::Past(frames) => Frame(first + u64::from(frames)),
+        At::Display(frames) => {
+            Frame((timeline.display().0 + 1).saturating_add_signed(i64::from(frames)).max(first))
+        }
+        At::Horizon(frames) => {
+            Frame(timeline.horizon().0.saturating_add_signed(i64::from(frames)).max(first))
+        }
+    }
+}
+
+/// What a refused command may not change.
+fn summary(timeline: &Timeline) -> (Frame, Frame, usize, u64) {
+    (timeline.valid_to(), timeline.horizon(), timeline.commands().count(), timeline.next_sequence())
+}
+
+fn finish(timeline: &mut Timeline) {
+    while timeline.advance() != Progress::Idle {}
+}
+
+fn ensure(holds: bool, otherwise: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(otherwise()) }
+}
+
+fn play(session: &Session) -> Result<(), String> {
+    let Some(mut fuzz) = Fuzz::new(session) else { return Ok(()) };
+    for (index, edit) in session.edits.iter().enumerate() {
+        fuzz.act(edit).map_err(|error| format!("edit {index}: {error}"))?;
+    }
+    fuzz.end()
+}
+
+fn number(variable: &str, default: u64) -> u64 {
+    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
+
+#[test]
+fn sessions_of_all_kinds() {
+    let mut seed = [0; 32];
+    seed[..8].copy_from_slice(&number("FORERUN_FUZZ_SEED", 1).to_le_bytes());
+    let cases = number("FORERUN_FUZZ_SESSIONS", 500) as u32;
+    let config = Config { cases, failure_persistence: None, max_shrink_iters: 20_000, ..Config::default() };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
+    let outcome = runner.run(&session(), |session| play(&session).map_err(TestCaseError::fail));
+    match outcome {
+        Ok(()) => {}
+        Err(TestError::Fail(reason, session)) => panic!("{reason}\nthe shortest such session: {session:#?}"),
+        Err(TestError::Abort(reason)) => panic!("{reason}"),
+    }
+}
