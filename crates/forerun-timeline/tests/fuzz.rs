@@ -13,7 +13,7 @@ use forerun_dynamics::{BodyDef, Environment};
 use forerun_geometry::Shape;
 use forerun_timeline::check::{full_run, mismatches};
 use forerun_timeline::{
-    Change, Command, CommandError, CommandKey, Frame, Progress, Timeline, TimelineSettings,
+    Change, Command, CommandError, CommandKey, Frame, Keep, Order, Progress, Timeline, TimelineSettings,
 };
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
@@ -61,6 +61,9 @@ impl Fuzz {
             Edit::Submit { at, source, change } => self.submit(*at, *source, change)?,
             Edit::Again(index) => self.again(*index)?,
             Edit::Retract(index) => self.retract(*index)?,
+            Edit::Replace(index, change) => self.replace(*index, change)?,
+            Edit::Undo => self.undo(Order::Undo)?,
+            Edit::Redo => self.undo(Order::Redo)?,
             Edit::Advance(frames) => {
                 for _ in 0..*frames {
                     let _ = self.run.timeline.advance();
@@ -71,13 +74,21 @@ impl Fuzz {
                 let display = self.run.timeline.display().0.saturating_add_signed(i64::from(*frames));
                 self.run.timeline.set_display(Frame(display.min(LAST_DISPLAY)));
             }
-            Edit::SaveAndLoad(_) => {}
+            Edit::SaveAndLoad(with_states) => self.save_and_load(*with_states)?,
             Edit::Fork if self.forks.len() < 3 => self.forks.push(self.run.clone()),
             Edit::Fork => {}
             Edit::Swap(index) => {
                 let count = self.forks.len().max(1);
                 if let Some(fork) = self.forks.get_mut(usize::from(*index) % count) {
                     std::mem::swap(fork, &mut self.run);
+                }
+            }
+            Edit::Adopt(index) => {
+                let count = self.forks.len().max(1);
+                if usize::from(*index) % count < self.forks.len() {
+                    let fork = self.forks.swap_remove(usize::from(*index) % count);
+                    self.run.timeline.adopt(fork.timeline);
+                    self.run.commands = fork.commands;
                 }
             }
             Edit::Compare => self.compare(&self.run)?,
@@ -96,25 +107,84 @@ impl Fuzz {
         let key = CommandKey { frame, source, sequence: self.sequence };
         let before = summary(timeline);
         let names = timeline.names();
-        match timeline.submit(Command { key, change: change.clone() }) {
+        let is_used = is_made(&change, &self.bodies, &self.run.commands);
+        match timeline.obey(Order::Submit(Command { key, change: change.clone() })) {
             Ok(()) => {
                 ensure(frame > timeline.oldest(), || format!("{key:?} is too old and was accepted"))?;
-                ensure(what.is_finite(), || format!("{change:?} was accepted"))?;
-                ensure(!matches!(what, What::AddAgain(..)), || format!("{change:?} was accepted"))?;
+                ensure(what.is_finite() && !is_used, || format!("{change:?} was accepted"))?;
                 self.run.commands.insert(key, change);
+                Ok(())
             }
             Err(error) => {
                 let expected = match (&error, what) {
                     (CommandError::TooOld { .. }, _) => frame <= timeline.oldest(),
-                    (_, What::AddAgain(..)) => true,
-                    // The ground bounds no volume.
-                    (_, What::SetKind(body, _)) => usize::from(*body) % names == 0,
-                    _ => !what.is_plain(),
+                    _ => is_used || may_refuse(what, names),
                 };
                 ensure(expected, || format!("{change:?} for {frame} was refused: {error}"))?;
-                ensure(before == summary(timeline), || format!("refusing {change:?} changed something"))?;
+                ensure(before == summary(timeline), || format!("refusing {change:?} changed something"))
             }
         }
+    }
+
+    fn replace(&mut self, index: u8, what: &What) -> Result<(), String> {
+        let Some((key, old)) = pick(&self.run.commands, index) else { return Ok(()) };
+        let timeline = &mut self.run.timeline;
+        let (before, names) = (summary(timeline), timeline.names());
+        let change = what.change(names);
+        let mut others = self.run.commands.clone();
+        others.remove(&key);
+        let is_used = is_made(&change, &self.bodies, &others);
+        match timeline.obey(Order::Replace(Command { key, change: change.clone() })) {
+            Ok(()) => {
+                ensure(key.frame > timeline.oldest(), || format!("{key:?} is too old and was replaced"))?;
+                ensure(what.is_finite() && !is_used, || format!("{change:?} was accepted"))?;
+                self.run.commands.insert(key, change);
+                Ok(())
+            }
+            Err(error) => {
+                let expected = match &error {
+                    CommandError::UnknownCommand(_) => key.frame <= timeline.oldest(),
+                    _ => is_used || may_refuse(what, names),
+                };
+                ensure(expected, || format!("{change:?} in place of {old:?} was refused: {error}"))?;
+                ensure(before == summary(timeline), || format!("refusing {change:?} changed something"))
+            }
+        }
+    }
+
+    /// What the timeline says it did is taken over; the commands before the oldest frame nobody can touch.
+    fn undo(&mut self, order: Order) -> Result<(), String> {
+        let timeline = &mut self.run.timeline;
+        let before = summary(timeline);
+        match timeline.obey(order.clone()) {
+            Ok(()) => {
+                let oldest = timeline.oldest();
+                self.run.commands.retain(|key, _| key.frame <= oldest);
+                self.run.commands.extend(timeline.commands().map(|(key, change)| (*key, change.clone())));
+                Ok(())
+            }
+            Err(error) => {
+                // Another body may have the name by now.
+                let expected = [CommandError::NothingToUndo, CommandError::NothingToRedo].contains(&error)
+                    || matches!(error, CommandError::BodyExists(_));
+                ensure(expected, || format!("{order:?} was refused: {error}"))?;
+                ensure(before == summary(timeline), || format!("refusing {order:?} changed something"))
+            }
+        }
+    }
+
+    fn save_and_load(&mut self, with_states: bool) -> Result<(), String> {
+        let timeline = &self.run.timeline;
+        let parts = timeline.parts(if with_states { Keep::States } else { Keep::Commands });
+        let loaded = Timeline::from_parts(parts.clone()).map_err(|error| format!("loading: {error}"))?;
+        let last = if with_states { timeline.valid_to() } else { timeline.oldest() };
+        ensure(loaded.valid_to() == last && loaded.horizon() == last, || {
+            format!("saved up to {last}, loaded up to {}", loaded.valid_to())
+        })?;
+        ensure(loaded.diff(timeline).is_none(), || "loaded states differ".to_owned())?;
+        let again = loaded.parts(if with_states { Keep::States } else { Keep::Commands });
+        ensure(again == parts, || format!("saved\n{parts:?}\nand again\n{again:?}"))?;
+        self.run.timeline = loaded;
         Ok(())
     }
 
@@ -135,7 +205,7 @@ impl Fuzz {
     fn retract(&mut self, index: u8) -> Result<(), String> {
         let Some((key, _)) = pick(&self.run.commands, index) else { return Ok(()) };
         let kept = key.frame > self.run.timeline.oldest();
-        let done = self.run.timeline.retract(&key);
+        let done = self.run.timeline.obey(Order::Retract(key)).is_ok();
         ensure(done == kept, || format!("retracting {key:?}: {done}"))?;
         if done {
             self.run.commands.remove(&key);
@@ -169,14 +239,43 @@ impl Fuzz {
             let (oldest, horizon) = (run.timeline.oldest(), run.timeline.horizon());
             ensure((oldest.0..=horizon.0).map(Frame).all(finite), || "a state is not finite".to_owned())?;
             if oldest == Frame(0) {
-                for (key, _) in std::mem::take(&mut run.commands) {
-                    ensure(run.timeline.retract(&key), || format!("{key:?} cannot be taken back"))?;
-                }
-                finish(&mut run.timeline);
-                self.compare(&run).map_err(|error| format!("after taking back everything: {error}"))?;
+                self.take_back(run)?;
             }
         }
         Ok(())
+    }
+
+    /// Without its commands the timeline is as it was at first.
+    fn take_back(&self, mut run: Run) -> Result<(), String> {
+        while run.timeline.undo().is_ok() {}
+        let keys: Vec<CommandKey> = run.timeline.commands().map(|(key, _)| *key).collect();
+        for key in keys {
+            ensure(run.timeline.retract(&key), || format!("{key:?} cannot be taken back"))?;
+        }
+        finish(&mut run.timeline);
+        let frames = run.timeline.horizon();
+        let first = full_run(&self.bodies, [], self.environment, frames.0.max(1) as u32)
+            .map_err(|error| format!("no full run: {error}"))?;
+        let hashes = (run.timeline.state_hash(frames), first.state_hash(frames));
+        ensure(hashes.0.is_some() && hashes.0 == hashes.1, || {
+            format!("after taking back everything: {:?}", mismatches(&run.timeline, &first).1)
+        })
+    }
+}
+
+/// Whether a change adds a body by a name that another was made by.
+fn is_made(change: &Change, bodies: &[BodyDef], commands: &BTreeMap<CommandKey, Change>) -> bool {
+    let Change::Add { body, .. } = change else { return false };
+    let adds = |other: &Change| matches!(other, Change::Add { body: made, .. } if made == body);
+    (body.0 as usize) < bodies.len() || commands.values().any(adds)
+}
+
+/// Whether a change may be refused, though it is for a possible frame and no body is made twice.
+fn may_refuse(what: &What, names: usize) -> bool {
+    match what {
+        // The ground bounds no volume.
+        What::SetKind(body, _) => usize::from(*body) % names == 0,
+        _ => !what.is_plain(),
     }
 }
 

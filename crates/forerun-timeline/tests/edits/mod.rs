@@ -28,6 +28,12 @@ pub(crate) enum Edit {
     Again(u8),
     /// A command is taken back.
     Retract(u8),
+    /// Another change takes the place of that of a command.
+    Replace(u8, What),
+    /// The local user takes back the last order.
+    Undo,
+    /// The local user does again what was taken back.
+    Redo,
     /// Some frames of work.
     Advance(u8),
     /// All the work there is.
@@ -40,6 +46,8 @@ pub(crate) enum Edit {
     Fork,
     /// The session goes on with a fork.
     Swap(u8),
+    /// A fork becomes the timeline.
+    Adopt(u8),
     /// Everything known to be true is compared with a full run.
     Compare,
 }
@@ -107,7 +115,7 @@ impl Arrow {
 #[derive(Clone, Debug)]
 pub(crate) enum What {
     Add(Spec),
-    /// With the name of a body that is or was there: refused.
+    /// With a name in use: refused where a body is or was made by it.
     AddAgain(u8, Spec),
     Remove(u8),
     Move(u8, Arrow),
@@ -126,7 +134,7 @@ impl What {
     /// Whether all its numbers are of ordinary size, so that nobody may refuse them.
     pub(crate) fn is_plain(&self) -> bool {
         let possible = match self {
-            What::Add(spec) => !matches!(spec.density, Size::Zero),
+            What::Add(spec) | What::AddAgain(_, spec) => !matches!(spec.density, Size::Zero),
             _ => true,
         };
         possible && self.sizes().into_iter().all(Size::is_plain)
@@ -274,13 +282,17 @@ fn edit() -> impl Strategy<Value = Edit> {
     prop_oneof![
         20 => (at(), 0_u32..3, what()).prop_map(|(at, source, change)| Edit::Submit { at, source, change }),
         1 => any::<u8>().prop_map(Edit::Again),
-        4 => any::<u8>().prop_map(Edit::Retract),
+        3 => any::<u8>().prop_map(Edit::Retract),
+        3 => (any::<u8>(), what()).prop_map(|(index, change)| Edit::Replace(index, change)),
+        3 => Just(Edit::Undo),
+        2 => Just(Edit::Redo),
         8 => (1_u8..12).prop_map(Edit::Advance),
         2 => Just(Edit::Finish),
         4 => (-6_i8..10).prop_map(Edit::Display),
         2 => any::<bool>().prop_map(Edit::SaveAndLoad),
         1 => Just(Edit::Fork),
         1 => any::<u8>().prop_map(Edit::Swap),
+        1 => any::<u8>().prop_map(Edit::Adopt),
         1 => Just(Edit::Compare),
     ]
 }
