@@ -118,7 +118,7 @@ impl Fuzz {
             Err(error) => {
                 let expected = match (&error, what) {
                     (CommandError::TooOld { .. }, _) => frame <= timeline.oldest(),
-                    _ => is_used || may_refuse(what, names),
+                    _ => is_used || may_refuse(what),
                 };
                 ensure(expected, || format!("{change:?} for {frame} was refused: {error}"))?;
                 ensure(before == summary(timeline), || format!("refusing {change:?} changed something"))
@@ -144,7 +144,7 @@ impl Fuzz {
             Err(error) => {
                 let expected = match &error {
                     CommandError::UnknownCommand(_) => key.frame <= timeline.oldest(),
-                    _ => is_used || may_refuse(what, names),
+                    _ => is_used || may_refuse(what),
                 };
                 ensure(expected, || format!("{change:?} in place of {old:?} was refused: {error}"))?;
                 ensure(before == summary(timeline), || format!("refusing {change:?} changed something"))
@@ -271,10 +271,10 @@ fn is_made(change: &Change, bodies: &[BodyDef], commands: &BTreeMap<CommandKey, 
 }
 
 /// Whether a change may be refused, though it is for a possible frame and no body is made twice.
-fn may_refuse(what: &What, names: usize) -> bool {
+fn may_refuse(what: &What) -> bool {
     match what {
-        // The ground bounds no volume.
-        What::SetKind(body, _) => usize::from(*body) % names == 0,
+        // The ground bounds no volume, and there are bodies of next to no mass.
+        What::SetKind(..) => true,
         _ => !what.is_plain(),
     }
 }
