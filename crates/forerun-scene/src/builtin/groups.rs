@@ -56,9 +56,8 @@ pub(super) fn walls(count: u32) -> Scene {
         let foot = Vec3::new(centred(pile % side, side), 0.0, centred(pile / side, rows)) * BIN;
         for i in 0..36 {
             let cell = Vec3::new(centred(i % 3, 3), (i / 9) as f32, centred(i / 3 % 3, 3));
-            let place = foot + cell * Vec3::new(0.7, 0.6, 0.7) + Vec3::Y * 0.3;
-            let yaw = turn(Vec3::Y, noise.about_zero(0.05));
-            scene.put(cuboid(0.3, 0.25, 0.3).at(place).turned(yaw));
+            let place = foot + cell * Vec3::new(0.7, 0.6, 0.7) + Vec3::Y * 0.5;
+            scene.put(cuboid(0.25, 0.2, 0.3).at(place).turned(noise.rotation()));
         }
     }
     scene
@@ -204,7 +203,7 @@ pub(super) fn pile(count: u32) -> Scene {
             Vec3::new(centred(cell % side, side), 0.5 + 0.9 * layer as f32, centred(cell / side, side));
         let mut half = || noise.between(0.2, 0.4);
         let body = cuboid(half(), half(), half());
-        scene.put(body.at(lattice).turned(turn(Vec3::Y, noise.about_zero(0.3))));
+        scene.put(body.at(lattice).turned(noise.rotation()));
     }
     scene
 }
