@@ -48,6 +48,7 @@ mod hearing;
 mod memory;
 mod order;
 mod random_change;
+mod reference;
 mod sample;
 mod shared_list;
 pub mod snapshot;

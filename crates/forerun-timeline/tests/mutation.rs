@@ -13,7 +13,8 @@ fn mismatches(mutation: Mutation) -> u64 {
     let mut count = 0;
     for (_, bodies) in scenes::all() {
         for seed in 20..24 {
-            let settings = CheckSettings { edits: 10, seed, frames: 80, mutation };
+            let settings =
+                CheckSettings { edits: 10, seed, frames: 80, mutation, ..CheckSettings::default() };
             let report = check(&bodies, environment, &settings, &mut |_| {}).expect("bodies are possible");
             count += report.mismatches;
         }
