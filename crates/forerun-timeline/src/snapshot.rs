@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyId, BodyState};
+use forerun_dynamics::{Body, BodyId, BodyState, Environment};
 use forerun_geometry::{Pose, Vec3};
 
 use crate::definitions::Definitions;
+use crate::frame_table::FrameTable;
 use crate::tables::Tables;
 use crate::{Frame, Timeline, sample};
 
@@ -124,22 +125,25 @@ impl Snapshot {
     /// last one that is known held. `None` where the body does not exist.
     #[must_use]
     pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
-        self.sample_at(body, self.moment(seconds))
+        self.sample_at(body, &self.look_at(seconds))
     }
 
     /// All bodies at a time, in the order of their ids. `samples` is emptied first and keeps its memory.
     pub fn sample_all(&self, seconds: f64, samples: &mut Vec<(BodyId, Sample)>) {
         samples.clear();
-        let moment = self.moment(seconds);
-        let frame = moment.frame.min(self.horizon());
+        let look = self.look_at(seconds);
+        let frame = look.moment.frame.min(self.horizon());
+        if self.doubtful.is_empty() {
+            let bodies = self.bodies_at(frame);
+            samples.extend(bodies.filter_map(|body| Some((body, self.sample_at(body, &look)?))));
+            return;
+        }
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
-        if !self.doubtful.is_empty() {
-            bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
-            bodies.sort_unstable();
-            bodies.dedup();
-        }
-        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
+        bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
+        bodies.sort_unstable();
+        bodies.dedup();
+        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, &look)?))));
     }
 
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
@@ -170,28 +174,45 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
+    /// What all samples of a time have in common.
+    fn look_at(&self, seconds: f64) -> Look<'_> {
+        let moment = self.moment(seconds);
+        Look {
+            moment,
+            here: self.tables.get(moment.frame),
+            next: self.tables.get(moment.frame.next()),
+            environment: self.definitions.environment(moment.frame),
+        }
+    }
+
     /// The last frame at which a body is known to be true.
     fn known_to(&self, body: BodyId) -> Frame {
+        if self.doubtful.is_empty() {
+            return self.horizon();
+        }
         let found = self.doubtful.binary_search_by_key(&body, |(id, _)| *id);
         found.map_or_else(|_| self.horizon(), |index| self.doubtful[index].1)
     }
 
-    fn sample_at(&self, id: BodyId, moment: Moment) -> Option<Sample> {
+    fn sample_at(&self, id: BodyId, look: &Look) -> Option<Sample> {
         let known_to = self.known_to(id);
-        let Moment { frame, part } = moment;
+        let Moment { frame, part } = look.moment;
         if frame > known_to || (frame == known_to && part > 0.0) {
-            return self.sample_late(id, moment, known_to);
+            return self.sample_late(id, look.moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
-        let state = self.state(id, frame)?;
-        let shown = match self.state(id, frame.next()) {
-            Some(next) if part > 0.0 => {
-                sample::between((state, next), part, body, &self.definitions.environment(frame))
-            }
-            _ => *state,
-        };
+        let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
-        Some(sample_of(body, &shown, if beyond { Certainty::Presumed } else { Certainty::Exact }))
+        let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
+        let next = look.next.and_then(|table| table.get(id)).filter(|_| part > 0.0);
+        Some(match next {
+            // At rest, both are the same memory.
+            Some(next) if !std::ptr::eq(next, state) => {
+                let shown = sample::between((state, next), part, body, &look.environment);
+                sample_of(body, &shown, certainty)
+            }
+            _ => sample_of(body, state, certainty),
+        })
     }
 
     /// A body after the last frame at which it is known.
@@ -206,6 +227,14 @@ impl Snapshot {
         let certainty = if late <= EXTRAPOLATED_FRAMES { Certainty::Extrapolated } else { Certainty::Held };
         Some(sample_of(body, &shown, certainty))
     }
+}
+
+/// A time, and what is stored around it.
+struct Look<'a> {
+    moment: Moment,
+    here: Option<&'a Arc<FrameTable>>,
+    next: Option<&'a Arc<FrameTable>>,
+    environment: Environment,
 }
 
 /// A time, as a frame and a part of the next (0 to 1).
