@@ -49,6 +49,7 @@ mod memory;
 mod order;
 pub mod parts;
 mod random_change;
+mod reference;
 mod sample;
 mod shared_list;
 pub mod snapshot;
