@@ -100,7 +100,7 @@ fn meshes_overlap_as_the_solids_that_they_stand_for() {
     let mut random = Random(7);
     let half = Vec3::new(0.9, 0.15, 0.5);
     let (solid, mesh) = (Shape::cuboid(half).unwrap(), Shape::from(mesh_make::cuboid(half).unwrap()));
-    let small = Vec3::splat(0.1);
+    let small = Vec3::splat(0.06);
     let (small_solid, small_mesh) =
         (Shape::cuboid(small).unwrap(), Shape::from(mesh_make::cuboid(small).unwrap()));
     let mut others = convex_shapes();
@@ -119,7 +119,7 @@ fn meshes_overlap_as_the_solids_that_they_stand_for() {
         assert_eq!(found, both_ways(&solid, &pose_a, &small_solid, &pose_b), "{pose_a:?} {pose_b:?}");
         together += u32::from(found);
     }
-    assert!((20..280).contains(&together), "{together}");
+    assert!((10..280).contains(&together), "{together}");
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn holes_are_empty_and_insides_are_full() {
     let tiny = Shape::from(mesh_make::ball(0.05, 4).unwrap());
     for small in [&ball, &tiny] {
         assert!(!both_ways(&torus, &Pose::IDENTITY, small, &Pose::IDENTITY), "in the hole");
-        let ring = (0..8).map(|i| f32::from(i as u8) * 0.7).map(|angle| libm::sincosf(angle));
+        let ring = (0..8).map(|i| f32::from(i as u8) * 0.7).map(libm::sincosf);
         let inside = ring.filter(|(s, c)| {
             // The tube lies in one of the planes of the axes: in which, the mesh says itself.
             let flat = torus.aabb(&Pose::IDENTITY).half_extents();

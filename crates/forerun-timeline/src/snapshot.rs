@@ -136,6 +136,12 @@ impl Snapshot {
     pub fn sample_all(&self, seconds: f64, samples: &mut Vec<(BodyId, Sample)>) {
         samples.clear();
         let moment = self.moment(seconds);
+        let bodies = self.bodies_shown(moment);
+        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
+    }
+
+    /// The bodies that there may be something to show of at a moment, in the order of their ids.
+    pub(crate) fn bodies_shown(&self, moment: Moment) -> Vec<BodyId> {
         let frame = moment.frame.min(self.horizon());
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
@@ -144,7 +150,7 @@ impl Snapshot {
             bodies.sort_unstable();
             bodies.dedup();
         }
-        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
+        bodies
     }
 
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
@@ -164,7 +170,7 @@ impl Snapshot {
         longest.unwrap_or(last).since(self.moment(seconds).frame)
     }
 
-    fn moment(&self, seconds: f64) -> Moment {
+    pub(crate) fn moment(&self, seconds: f64) -> Moment {
         let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest.0 as f64);
         // A time that was computed from a frame means that frame (dissertation, algorithm 1: epsilon).
         let nearest = frames.round();
@@ -176,16 +182,22 @@ impl Snapshot {
     }
 
     /// The last frame at which a body is known to be true.
-    fn known_to(&self, body: BodyId) -> Frame {
+    pub(crate) fn known_to(&self, body: BodyId) -> Frame {
         let found = self.doubtful.binary_search_by_key(&body, |(id, _)| *id);
         found.map_or_else(|_| self.horizon(), |index| self.doubtful[index].1)
     }
 
     fn sample_at(&self, id: BodyId, moment: Moment) -> Option<Sample> {
+        let (body, state, certainty) = self.shown(id, moment)?;
+        Some(sample_of(body, &state, certainty))
+    }
+
+    /// What a body is at a moment, the state that it is shown in, and how sure that is.
+    pub(crate) fn shown(&self, id: BodyId, moment: Moment) -> Option<(&Body, BodyState, Certainty)> {
         let known_to = self.known_to(id);
         let Moment { frame, part } = moment;
         if frame > known_to || (frame == known_to && part > 0.0) {
-            return self.sample_late(id, moment, known_to);
+            return self.shown_late(id, moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
         let state = self.state(id, frame)?;
@@ -196,28 +208,33 @@ impl Snapshot {
             _ => *state,
         };
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
-        Some(sample_of(body, &shown, if beyond { Certainty::Presumed } else { Certainty::Exact }))
+        Some((body, shown, if beyond { Certainty::Presumed } else { Certainty::Exact }))
     }
 
     /// A body after the last frame at which it is known.
-    fn sample_late(&self, id: BodyId, moment: Moment, known_to: Frame) -> Option<Sample> {
+    fn shown_late(
+        &self,
+        id: BodyId,
+        moment: Moment,
+        known_to: Frame,
+    ) -> Option<(&Body, BodyState, Certainty)> {
         let body = self.definitions.body(id, known_to)?;
         let state = self.state(id, known_to)?;
         if known_to == self.horizon() {
-            return Some(sample_of(body, state, Certainty::Held));
+            return Some((body, *state, Certainty::Held));
         }
         let late = moment.frame.since(known_to) as f32 + moment.part;
         let shown = sample::beyond(state, late.min(EXTRAPOLATED_FRAMES), self.frame_seconds());
         let certainty = if late <= EXTRAPOLATED_FRAMES { Certainty::Extrapolated } else { Certainty::Held };
-        Some(sample_of(body, &shown, certainty))
+        Some((body, shown, certainty))
     }
 }
 
 /// A time, as a frame and a part of the next (0 to 1).
 #[derive(Clone, Copy, Debug)]
-struct Moment {
-    frame: Frame,
-    part: f32,
+pub(crate) struct Moment {
+    pub(crate) frame: Frame,
+    pub(crate) part: f32,
 }
 
 fn sample_of(body: &Body, state: &BodyState, certainty: Certainty) -> Sample {
