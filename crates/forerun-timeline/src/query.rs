@@ -7,7 +7,7 @@ use forerun_dynamics::{Body, BodyId};
 use forerun_geometry::{Aabb, Pose, Ray, Shape, Vec3};
 
 use crate::Snapshot;
-use crate::snapshot::Moment;
+use crate::snapshot::{Look, Moment};
 
 /// Rounding may put a surface this much farther out than the ball around it says: part of its radius, and of where it is.
 const ROUNDING: f32 = 1e-5;
@@ -29,7 +29,7 @@ impl Snapshot {
     /// Where a body's own frame is at a time (seconds). `None` where the body does not exist or the time is no number.
     #[must_use]
     pub fn pose(&self, body: BodyId, seconds: f64) -> Option<Pose> {
-        let (body, state, _) = self.shown(body, self.time(seconds)?)?;
+        let (body, state, _) = self.shown(body, &self.time(seconds)?)?;
         Some(body.own_pose(&state))
     }
 
@@ -37,7 +37,7 @@ impl Snapshot {
     /// `None` where the body does not exist, or where time or point are no numbers.
     #[must_use]
     pub fn velocity_at(&self, body: BodyId, point: Vec3, seconds: f64) -> Option<Vec3> {
-        let (_, state, _) = self.shown(body, self.time(seconds)?)?;
+        let (_, state, _) = self.shown(body, &self.time(seconds)?)?;
         point.is_finite().then(|| state.velocity_at(point))
     }
 
@@ -119,7 +119,7 @@ impl Snapshot {
             !apart
         };
         let mut found = Vec::new();
-        self.look_at(seconds, near, |id, body, own_pose| {
+        self.for_each_near(seconds, near, |id, body, own_pose| {
             if body.shape.overlaps(&own_pose, shape, pose) {
                 found.push(id);
             }
@@ -141,7 +141,7 @@ impl Snapshot {
             let apart = aabb.closest_point(centre).distance_squared(centre) > reach * reach;
             !apart
         };
-        self.look_at(seconds, near, |id, body, pose| {
+        self.for_each_near(seconds, near, |id, body, pose| {
             if body.shape.aabb(&pose).overlaps(aabb) {
                 found.push(id);
             }
@@ -149,8 +149,8 @@ impl Snapshot {
         found
     }
 
-    fn time(&self, seconds: f64) -> Option<Moment> {
-        seconds.is_finite().then(|| self.moment(seconds))
+    fn time(&self, seconds: f64) -> Option<Look<'_>> {
+        seconds.is_finite().then(|| self.look_at(seconds))
     }
 
     /// Calls `met` with every body whose ball a ray meets within a distance, and how to find out where it meets the body itself. What
@@ -175,7 +175,7 @@ impl Snapshot {
             let apart = (arm - direction * along).length_squared() > reach * reach;
             !apart
         };
-        self.look_at(seconds, near, |id, body, pose| {
+        self.for_each_near(seconds, near, |id, body, pose| {
             let goes_on = met(id, &|| {
                 let hit = body.shape.cast_ray(&pose, &ray, max_distance)?;
                 Some(BodyHit { body: id, distance: hit.distance, point: hit.point, normal: hit.normal })
@@ -185,38 +185,39 @@ impl Snapshot {
     }
 
     /// Calls `look` with every body that is there at a time, and its pose, but for those whose ball (centre, radius) `near` rules out.
-    fn look_at(
+    fn for_each_near(
         &self,
         seconds: f64,
         near: impl Fn(Vec3, f32) -> bool,
         mut look: impl FnMut(BodyId, &Body, Pose),
     ) {
-        let Some(moment) = self.time(seconds) else { return };
-        for id in self.bodies_shown(moment) {
-            if self.ball(id, moment).is_some_and(|(centre, radius)| !near(centre, radius)) {
-                continue;
+        let Some(at) = self.time(seconds) else { return };
+        self.for_each_shown(at.moment, |id| {
+            if self.ball(id, &at).is_some_and(|(centre, radius)| !near(centre, radius)) {
+                return;
             }
-            if let Some((body, state, _)) = self.shown(id, moment) {
+            if let Some((body, state, _)) = self.shown(id, &at) {
                 look(id, body, body.own_pose(&state));
             }
-        }
+        });
     }
 
-    /// A ball around a body at a moment, cheaper than its state; `None` where there is no such short way.
-    fn ball(&self, id: BodyId, moment: Moment) -> Option<(Vec3, f32)> {
-        let Moment { frame, part } = moment;
+    /// A ball around a body at a time, cheaper than its state; `None` where there is no such short way.
+    fn ball(&self, id: BodyId, at: &Look) -> Option<(Vec3, f32)> {
+        let Moment { frame, part } = at.moment;
         if self.known_to(id) <= frame {
             return None;
         }
         let radius = self.body_at(id, frame)?.radius;
-        let state = self.state(id, frame)?;
-        if part <= 0.0 {
+        let state = at.here?.get(id)?;
+        let next = at.next?.get(id)?;
+        if part <= 0.0 || std::ptr::eq(state, next) {
             return Some((state.position, radius));
         }
-        let next = self.state(id, frame.next())?;
         // The cubic of a free flight leaves the straight line by at most 4/27 of what each end's velocity would.
         let line = next.position - state.position;
-        let off = |velocity: Vec3| (velocity * self.frame_seconds() - line).abs().element_sum();
+        let seconds = at.environment.settings.frame_seconds;
+        let off = |velocity: Vec3| (velocity * seconds - line).abs().element_sum();
         let slack = 0.149 * (off(state.velocity) + off(next.velocity));
         Some((state.position + line * part, radius + slack))
     }

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyId, BodyState};
+use forerun_dynamics::{Body, BodyId, BodyState, Environment};
 use forerun_geometry::{Pose, Vec3};
 
 use crate::definitions::Definitions;
+use crate::frame_table::FrameTable;
 use crate::tables::Tables;
 use crate::{Frame, Timeline, sample};
 
@@ -124,28 +125,30 @@ impl Snapshot {
     /// last one that is known held. `None` where the body does not exist.
     #[must_use]
     pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
-        self.sample_at(body, self.moment(seconds))
+        self.sample_at(body, &self.look_at(seconds))
     }
 
     /// All bodies at a time, in the order of their ids. `samples` is emptied first and keeps its memory.
     pub fn sample_all(&self, seconds: f64, samples: &mut Vec<(BodyId, Sample)>) {
         samples.clear();
-        let moment = self.moment(seconds);
-        let bodies = self.bodies_shown(moment);
-        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
+        let look = self.look_at(seconds);
+        self.for_each_shown(look.moment, |body| {
+            samples.extend(self.sample_at(body, &look).map(|sample| (body, sample)));
+        });
     }
 
-    /// The bodies that there may be something to show of at a moment, in the order of their ids.
-    pub(crate) fn bodies_shown(&self, moment: Moment) -> Vec<BodyId> {
+    /// Calls `visit` with the bodies of which there may be something to show at a moment, in the order of their ids.
+    pub(crate) fn for_each_shown(&self, moment: Moment, visit: impl FnMut(BodyId)) {
         let frame = moment.frame.min(self.horizon());
+        if self.doubtful.is_empty() {
+            return self.bodies_at(frame).for_each(visit);
+        }
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
-        if !self.doubtful.is_empty() {
-            bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
-            bodies.sort_unstable();
-            bodies.dedup();
-        }
-        bodies
+        bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies.into_iter().for_each(visit);
     }
 
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
@@ -165,7 +168,7 @@ impl Snapshot {
         longest.unwrap_or(last).since(self.moment(seconds).frame)
     }
 
-    pub(crate) fn moment(&self, seconds: f64) -> Moment {
+    fn moment(&self, seconds: f64) -> Moment {
         let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest().0 as f64);
         // A time that was computed from a frame means that frame (dissertation, algorithm 1: epsilon).
         let nearest = frames.round();
@@ -176,34 +179,50 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
+    /// What all samples of a time have in common.
+    pub(crate) fn look_at(&self, seconds: f64) -> Look<'_> {
+        let moment = self.moment(seconds);
+        Look {
+            moment,
+            here: self.tables.get(moment.frame),
+            next: self.tables.get(moment.frame.next()),
+            environment: self.definitions.environment(moment.frame),
+        }
+    }
+
     /// The last frame at which a body is known to be true.
     pub(crate) fn known_to(&self, body: BodyId) -> Frame {
+        if self.doubtful.is_empty() {
+            return self.horizon();
+        }
         let found = self.doubtful.binary_search_by_key(&body, |(id, _)| *id);
         found.map_or_else(|_| self.horizon(), |index| self.doubtful[index].1)
     }
 
-    fn sample_at(&self, id: BodyId, moment: Moment) -> Option<Sample> {
-        let (body, state, certainty) = self.shown(id, moment)?;
+    fn sample_at(&self, id: BodyId, look: &Look) -> Option<Sample> {
+        let (body, state, certainty) = self.shown(id, look)?;
         Some(sample_of(body, &state, certainty))
     }
 
-    /// What a body is at a moment, the state that it is shown in, and how sure that is.
-    pub(crate) fn shown(&self, id: BodyId, moment: Moment) -> Option<(&Body, BodyState, Certainty)> {
+    /// What a body is at a time, the state that it is shown in, and how sure that is.
+    pub(crate) fn shown(&self, id: BodyId, look: &Look) -> Option<(&Body, BodyState, Certainty)> {
         let known_to = self.known_to(id);
-        let Moment { frame, part } = moment;
+        let Moment { frame, part } = look.moment;
         if frame > known_to || (frame == known_to && part > 0.0) {
-            return self.shown_late(id, moment, known_to);
+            return self.shown_late(id, look.moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
-        let state = self.state(id, frame)?;
-        let shown = match self.state(id, frame.next()) {
-            Some(next) if part > 0.0 => {
-                sample::between((state, next), part, body, &self.definitions.environment(frame))
-            }
-            _ => *state,
-        };
+        let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
-        Some((body, shown, if beyond { Certainty::Presumed } else { Certainty::Exact }))
+        let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
+        let next = look.next.and_then(|table| table.get(id)).filter(|_| part > 0.0);
+        Some(match next {
+            // At rest, both are the same memory.
+            Some(next) if !std::ptr::eq(next, state) => {
+                (body, sample::between((state, next), part, body, &look.environment), certainty)
+            }
+            _ => (body, *state, certainty),
+        })
     }
 
     /// A body after the last frame at which it is known.
@@ -223,6 +242,14 @@ impl Snapshot {
         let certainty = if late <= EXTRAPOLATED_FRAMES { Certainty::Extrapolated } else { Certainty::Held };
         Some((body, shown, certainty))
     }
+}
+
+/// A time, and what is stored around it.
+pub(crate) struct Look<'a> {
+    pub(crate) moment: Moment,
+    pub(crate) here: Option<&'a Arc<FrameTable>>,
+    pub(crate) next: Option<&'a Arc<FrameTable>>,
+    pub(crate) environment: Environment,
 }
 
 /// A time, as a frame and a part of the next (0 to 1).
