@@ -47,6 +47,7 @@ mod hearing;
 mod random_change;
 mod sample;
 pub mod snapshot;
+mod snapshot_difference;
 mod stale;
 pub mod timeline;
 mod wavefront;

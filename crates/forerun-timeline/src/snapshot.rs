@@ -52,7 +52,7 @@ pub struct Snapshot {
     tables: Vec<Arc<FrameTable>>,
     definitions: Arc<Definitions>,
     /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body.
-    doubtful: Vec<(BodyId, Frame)>,
+    pub(crate) doubtful: Vec<(BodyId, Frame)>,
 }
 
 impl Timeline {
@@ -109,8 +109,11 @@ impl Snapshot {
     /// The stored state of a body; `None` when there is none at that frame.
     #[must_use]
     pub fn state(&self, body: BodyId, frame: Frame) -> Option<&BodyState> {
-        let index = frame.0.checked_sub(self.oldest.0)?;
-        self.tables.get(index as usize)?.get(body)
+        self.table(frame)?.get(body)
+    }
+
+    pub(crate) fn table(&self, frame: Frame) -> Option<&Arc<FrameTable>> {
+        self.tables.get(frame.0.checked_sub(self.oldest.0)? as usize)
     }
 
     /// The body as it is from this frame to the next; `None` when it does not exist then.
@@ -164,7 +167,7 @@ impl Snapshot {
         longest.unwrap_or(last).since(self.moment(seconds).frame)
     }
 
-    fn moment(&self, seconds: f64) -> Moment {
+    pub(crate) fn moment(&self, seconds: f64) -> Moment {
         let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest.0 as f64);
         // A time that was computed from a frame means that frame (dissertation, algorithm 1: epsilon).
         let nearest = frames.round();
@@ -215,9 +218,9 @@ impl Snapshot {
 
 /// A time, as a frame and a part of the next (0 to 1).
 #[derive(Clone, Copy, Debug)]
-struct Moment {
-    frame: Frame,
-    part: f32,
+pub(crate) struct Moment {
+    pub(crate) frame: Frame,
+    pub(crate) part: f32,
 }
 
 fn sample_of(body: &Body, state: &BodyState, certainty: Certainty) -> Sample {

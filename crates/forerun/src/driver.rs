@@ -2,16 +2,19 @@
 //!
 //! *Architecture invariant:* this is the lowest floor that knows a thread or a clock; see README.md beside the rooms.
 
+mod blend;
 mod clock;
 mod coupled;
 mod decoupled;
 mod direct_change;
 mod driver_error;
 mod frame_notes;
+mod pace;
 mod physics;
 mod reach;
 mod threads;
 
+pub use blend::{Blending, Offset};
 pub use clock::Clock;
 pub use coupled::{Coupled, StepLimits};
 pub use decoupled::{Decoupled, DecoupledSettings, Picture};

@@ -7,16 +7,26 @@ use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Snapshot, Stats, Timeline};
+use forerun_timeline::{
+    Change, Command, CommandError, CommandKey, Frame, Sample, Snapshot, Stats, Timeline,
+};
 
+use super::blend::{Blend, Blending, Offset};
 use super::driver_error::DriverError;
 use super::frame_notes::FrameNote;
-use super::physics::{self, Hinder, Shared};
+use super::pace::{Pace, Supply};
+use super::physics::{self, Hinder, Published, Shared};
 use super::reach::Reach;
 use crate::{BodyDef, BodyId, Threads};
 
 /// The largest queue: its memory is taken at the start, and a queue without room would never be drained.
 const COMMANDS_MAX: usize = 65_536;
+
+/// The fastest that a display may go. No physics feeds more, and times stay exact.
+const SPEED_MAX: f64 = 1000.0;
+
+/// A picture whose clock went slower than this was slowed; less is rounding.
+const FULL_RATE: f64 = 1.0 - 1e-6;
 
 /// How the physics thread works.
 #[derive(Debug)]
@@ -42,8 +52,15 @@ impl DecoupledSettings {
 pub struct Picture {
     /// All that physics knew when the picture was taken: sample it at `time_s`.
     pub snapshot: Arc<Snapshot>,
-    /// Display time T. Seconds; never less than in the picture before. Past the horizon, samples hold the last state.
+    /// Display time T. Seconds; never less than in the picture before, and never past the horizon.
     pub time_s: f64,
+    /// What T would be if physics had never been late. Seconds.
+    pub wished_s: f64,
+    /// The caller's clock when the picture was asked for. Seconds.
+    pub real_s: f64,
+    /// How fast T went since the picture before, against the caller's clock times the speed: below 1 where physics was late, at most 1.05
+    /// where lost time is being made good. 1 in the first picture and after [`Decoupled::seek`].
+    pub rate: f64,
     /// The frame shown: the last one at or before `time_s`.
     pub frame: Frame,
     /// How that frame was computed; none while it is not.
@@ -54,6 +71,14 @@ pub struct Picture {
     pub stats: Stats,
 }
 
+impl Picture {
+    /// Whether the clock was slowed because physics was late.
+    #[must_use]
+    pub fn is_slowed(&self) -> bool {
+        self.rate < FULL_RATE
+    }
+}
+
 /// The display's handle on a physics thread. Dropping it stops the thread and waits for the step that it is in.
 #[derive(Debug)]
 pub struct Decoupled {
@@ -62,7 +87,9 @@ pub struct Decoupled {
     commands: SyncSender<Command>,
     refusals: Receiver<(CommandKey, CommandError)>,
     frame_seconds: f64,
-    time_s: f64,
+    lookahead: u32,
+    pace: Pace,
+    blend: Blend,
     next_body: BodyId,
     next_sequence: u64,
 }
@@ -97,9 +124,11 @@ impl Decoupled {
         let (refusal_queue, refusals) = sync_channel(capacity);
         let snapshot = timeline.snapshot();
         let frame_seconds = f64::from(snapshot.frame_seconds());
+        let displayed = timeline.display();
         let next_body = timeline.reserve_body();
         let next_sequence = timeline.next_sequence();
-        let reach = Reach::new(timeline.settings().lookahead);
+        let lookahead = timeline.settings().lookahead;
+        let reach = Reach::new(lookahead);
         let shared = Arc::new(Shared::new(&timeline));
         let physics = physics::Physics {
             timeline,
@@ -119,36 +148,111 @@ impl Decoupled {
             commands,
             refusals,
             frame_seconds,
-            time_s: 0.0,
+            lookahead,
+            pace: Pace::starting_at(displayed.seconds(snapshot.frame_seconds())),
+            blend: Blend::default(),
             next_body,
             next_sequence,
         })
     }
 
-    /// What to draw at display time `time_s` (seconds; an earlier time than before counts as that). Never waits: past the
-    /// horizon the picture holds the last state.
+    /// What to draw when the caller's clock shows `real_s` (seconds; the first call says where it begins, and one that goes back stands
+    /// still). Never waits. Display time goes on by what passed times the speed; where physics is late it goes slower, down to
+    /// standing still, and makes up for it later at no more than 1.05 times that. A body that is merely out of date does not slow it:
+    /// its samples are extrapolated for a while, then held, and say so.
     ///
     /// # Errors
     /// When the physics thread has panicked; [`Decoupled::last_picture`] still works.
-    pub fn show(&mut self, time_s: f64) -> Result<Picture, DriverError> {
-        self.time_s = self.time_s.max(time_s);
-        self.shared.tell_display(self.displayed_frame());
+    pub fn show(&mut self, real_s: f64) -> Result<Picture, DriverError> {
         self.alive()?;
-        Ok(Picture { dropped_to: self.shared.take_drop(), ..self.last_picture() })
+        let published = self.shared.published.load_full();
+        self.pace.go_on(real_s, &self.supply(&published));
+        self.shared.tell_display(self.displayed_frame());
+        Ok(Picture { dropped_to: self.shared.take_drop(), ..self.picture(&published) })
+    }
+
+    /// How fast display time goes: 0 is a pause, 1 (the default) real time, 10 ten times that. Physics may be too slow for what is asked.
+    ///
+    /// # Errors
+    /// When the speed is not from 0 to 1000.
+    pub fn set_speed(&mut self, speed: f64) -> Result<(), DriverError> {
+        if !(0.0..=SPEED_MAX).contains(&speed) {
+            let message = format!("must be from 0 to {SPEED_MAX}, is {speed}");
+            return Err(DriverError::Setting { field: "speed", message });
+        }
+        self.pace.set_speed(speed);
+        Ok(())
+    }
+
+    /// How fast display time goes.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.pace.speed()
+    }
+
+    /// Goes to another display time at once, on purpose also back, and on from there: the time then shown, which is `time_s` (seconds), or the
+    /// nearest that is kept. What is changed there is an edit like any other: commands given for later frames stay in force.
+    ///
+    /// # Errors
+    /// When `time_s` is not a finite number, or the physics thread has panicked.
+    pub fn seek(&mut self, time_s: f64) -> Result<f64, DriverError> {
+        if !time_s.is_finite() {
+            let message = format!("must be a finite number, is {time_s}");
+            return Err(DriverError::Setting { field: "time_s", message });
+        }
+        self.alive()?;
+        let supply = self.supply(&self.shared.published.load_full());
+        let shown_s = self.pace.seek(time_s, &supply);
+        self.blend.forget();
+        self.shared.tell_display(self.displayed_frame());
+        Ok(shown_s)
     }
 
     /// The picture at the last display time, with what physics knows by now.
     #[must_use]
     pub fn last_picture(&self) -> Picture {
+        self.picture(&self.shared.published.load_full())
+    }
+
+    /// All bodies of a picture as they are to be drawn, in the order of their ids, and how far that is off the truth: where a newer snapshot
+    /// contradicts what was drawn (a command came late, one was taken back, an extrapolated body is known now), the body is led to
+    /// where it is within about 0.15 s. `samples` is emptied first and keeps its memory.
+    ///
+    /// To be called once for each picture, the latest; the plain truth is in [`Snapshot::sample_all`].
+    pub fn sample_all(&mut self, picture: &Picture, samples: &mut Vec<(BodyId, Sample)>) -> Blending {
+        self.blend.sample_all(picture, samples)
+    }
+
+    /// The bodies that [`Decoupled::sample_all`] drew elsewhere than they are. Sorted by body.
+    #[must_use]
+    pub fn offsets(&self) -> &[(BodyId, Offset)] {
+        self.blend.offsets()
+    }
+
+    fn picture(&self, published: &Published) -> Picture {
         let frame = self.displayed_frame();
-        let published = self.shared.published.load();
         Picture {
             snapshot: Arc::clone(&published.snapshot),
-            time_s: self.time_s,
+            time_s: self.pace.time_s(),
+            wished_s: self.pace.wished_s(),
+            real_s: self.pace.real_s(),
+            rate: self.pace.rate(),
             frame,
             note: self.shared.notes.read(frame.min(published.snapshot.horizon())),
             dropped_to: None,
             stats: published.stats,
+        }
+    }
+
+    fn supply(&self, published: &Published) -> Supply {
+        let snapshot = &published.snapshot;
+        let horizon = snapshot.horizon();
+        let frame_seconds = snapshot.frame_seconds();
+        Supply {
+            oldest_s: snapshot.oldest().seconds(frame_seconds),
+            horizon_s: horizon.seconds(frame_seconds),
+            lookahead_s: f64::from(self.lookahead) * self.frame_seconds,
+            full: horizon >= self.displayed_frame().plus(u64::from(self.lookahead)),
         }
     }
 
@@ -208,7 +312,7 @@ impl Decoupled {
         // As in the dissertation's algorithm 1, a time within a hair of a frame is that frame: k·h/h may round to below k. The hair is
         // that of the snapshot's sampling, so that the frame is the one that is shown.
         const HAIR: f64 = 1e-9;
-        let frames = self.time_s / self.frame_seconds;
+        let frames = self.pace.time_s() / self.frame_seconds;
         Frame((frames + HAIR * frames.max(1.0)) as u64)
     }
 
