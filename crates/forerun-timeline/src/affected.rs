@@ -100,10 +100,17 @@ impl Met<'_> {
 }
 
 /// Index by body into what was met. Kept between steps, so that a small step costs nothing for the others.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Scratch {
     /// Index plus 1; 0 is not met.
     met_index: Vec<u32>,
+}
+
+impl Clone for Scratch {
+    /// An empty one: between steps there is nothing in it, and a fork is not to pay for its size.
+    fn clone(&self) -> Scratch {
+        Scratch::default()
+    }
 }
 
 /// Finds the group that follows from `out_of_date` (sorted).

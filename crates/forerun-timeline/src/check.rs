@@ -92,7 +92,8 @@ pub fn check(
     settings: &CheckSettings,
     at: &mut dyn FnMut(CheckMoment),
 ) -> Result<CheckReport, FullRunError> {
-    let all = TimelineSettings { lookahead: settings.frames, past: settings.frames, area_m: None };
+    let all =
+        TimelineSettings { lookahead: settings.frames, past: settings.frames, ..TimelineSettings::default() };
     let mut timeline = Timeline::new(bodies, environment, all).map_err(FullRunError::Start)?;
     timeline.mutate(settings.mutation);
     let mut reference = Timeline::new(bodies, environment, all).map_err(FullRunError::Start)?;
@@ -180,7 +181,7 @@ pub fn full_run(
     environment: Environment,
     frames: u32,
 ) -> Result<Timeline, FullRunError> {
-    let settings = TimelineSettings { lookahead: frames, past: frames, area_m: None };
+    let settings = TimelineSettings { lookahead: frames, past: frames, ..TimelineSettings::default() };
     let mut timeline = Timeline::new(bodies, environment, settings).map_err(FullRunError::Start)?;
     timeline.recompute_all();
     // Commands may name bodies that later ones add.

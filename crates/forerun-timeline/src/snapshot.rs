@@ -7,7 +7,7 @@ use forerun_dynamics::{Body, BodyId, BodyState};
 use forerun_geometry::{Pose, Vec3};
 
 use crate::definitions::Definitions;
-use crate::frame_table::FrameTable;
+use crate::tables::Tables;
 use crate::{Frame, Timeline, sample};
 
 /// A body that physics is late with goes on for so many frames before it is held.
@@ -43,13 +43,11 @@ pub struct Sample {
 }
 
 /// States of all bodies from [`oldest`](Snapshot::oldest) to [`horizon`](Snapshot::horizon), as they were known when it was made.
-/// Making one costs a reference count per frame; it never changes and has no locks.
+/// Making one costs a reference count per frame in which something moved; it never changes and has no locks.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    oldest: Frame,
     valid_to: Frame,
-    /// The states at `oldest` and the frames after it; never empty.
-    tables: Vec<Arc<FrameTable>>,
+    pub(crate) tables: Tables,
     definitions: Arc<Definitions>,
     /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body.
     pub(crate) doubtful: Vec<(BodyId, Frame)>,
@@ -60,9 +58,8 @@ impl Timeline {
     #[must_use]
     pub fn snapshot(&self) -> Arc<Snapshot> {
         Arc::new(Snapshot {
-            oldest: self.oldest(),
             valid_to: self.valid_to(),
-            tables: self.tables.iter().cloned().collect(),
+            tables: self.tables.clone(),
             definitions: Arc::clone(&self.definitions),
             doubtful: self.doubtful(),
         })
@@ -85,13 +82,13 @@ impl Snapshot {
     /// The oldest frame kept.
     #[must_use]
     pub fn oldest(&self) -> Frame {
-        self.oldest
+        self.tables.oldest()
     }
 
     /// The last frame computed.
     #[must_use]
     pub fn horizon(&self) -> Frame {
-        self.oldest.plus(self.tables.len() as u64 - 1)
+        self.tables.horizon()
     }
 
     /// The last frame that is known to be true for all bodies.
@@ -103,17 +100,13 @@ impl Snapshot {
     /// Length of a frame. Seconds.
     #[must_use]
     pub fn frame_seconds(&self) -> f32 {
-        self.definitions.environment(self.oldest).settings.frame_seconds
+        self.definitions.environment(self.oldest()).settings.frame_seconds
     }
 
     /// The stored state of a body; `None` when there is none at that frame.
     #[must_use]
     pub fn state(&self, body: BodyId, frame: Frame) -> Option<&BodyState> {
-        self.table(frame)?.get(body)
-    }
-
-    pub(crate) fn table(&self, frame: Frame) -> Option<&Arc<FrameTable>> {
-        self.tables.get(frame.0.checked_sub(self.oldest.0)? as usize)
+        self.tables.get(frame)?.get(body)
     }
 
     /// The body as it is from this frame to the next; `None` when it does not exist then.
@@ -124,8 +117,7 @@ impl Snapshot {
 
     /// The bodies that are stored at a frame, in the order of their ids; none when the frame is not stored.
     pub fn bodies_at(&self, frame: Frame) -> impl Iterator<Item = BodyId> {
-        let table = frame.0.checked_sub(self.oldest.0).and_then(|index| self.tables.get(index as usize));
-        table.into_iter().flat_map(|table| table.iter().map(|(body, _)| body))
+        self.tables.get(frame).into_iter().flat_map(|table| table.iter().map(|(body, _)| body))
     }
 
     /// The body at a time (seconds since frame 0): exactly the stored state at a frame, between two of them interpolated, past the
@@ -168,7 +160,7 @@ impl Snapshot {
     }
 
     pub(crate) fn moment(&self, seconds: f64) -> Moment {
-        let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest.0 as f64);
+        let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest().0 as f64);
         // A time that was computed from a frame means that frame (dissertation, algorithm 1: epsilon).
         let nearest = frames.round();
         if (frames - nearest).abs() <= SAME_FRAME * nearest.max(1.0) {

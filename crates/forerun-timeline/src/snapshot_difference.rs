@@ -28,7 +28,7 @@ impl Snapshot {
     }
 
     fn differing_at(&self, other: &Snapshot, frame: Frame) -> Vec<BodyId> {
-        match (self.table(frame), other.table(frame)) {
+        match (self.tables.get(frame), other.tables.get(frame)) {
             (Some(mine), Some(theirs)) if Arc::ptr_eq(mine, theirs) => Vec::new(),
             (Some(mine), Some(theirs)) => mine.differences(theirs),
             (Some(table), None) | (None, Some(table)) => table.iter().map(|(body, _)| body).collect(),

@@ -11,10 +11,11 @@ use forerun_dynamics::{BodyId, BodyKind, BodyState, Observer, Stage};
 use crate::Frame;
 use crate::affected::{Affected, Inputs, Mutation, affected};
 use crate::areas::Until;
-use crate::commanding::Arrival;
+use crate::commanding::{Arrival, FrameEffects};
 use crate::frame_table::Entry;
 use crate::stale::Stale;
-use crate::timeline::{Advance, Progress, Timeline};
+use crate::stats::Advance;
+use crate::timeline::{Progress, Timeline};
 
 impl Timeline {
     /// Computes one frame: the earliest that is out of date, or else a new one while the lookahead has room. Between two calls all
@@ -33,7 +34,7 @@ impl Timeline {
             }
         }
         let horizon = self.horizon();
-        if horizon >= self.display().plus(u64::from(self.settings.lookahead)) {
+        if horizon >= self.display().plus(u64::from(self.settings.lookahead)) || !self.has_room() {
             return Progress::Idle;
         }
         let stale = self.stale_beyond_horizon();
@@ -109,24 +110,28 @@ impl Timeline {
             ask_everybody: self.recompute_all,
         };
         let entries = entries(&group, &next, out_of_date);
-        let mut effects = self.effects.remove(&arrival).unwrap_or_default();
+        // Forks and later edits share the effects: to touch them is to copy.
+        let mut effects = match self.effects.contains_key(&arrival) {
+            true => Arc::make_mut(&mut self.effects).remove(&arrival).unwrap_or_default(),
+            false => FrameEffects::default(),
+        };
         let mut entries = arrived.apply_commands(entries, stale, &mut self.areas, &mut effects);
         if let Mutation::Tolerance(tolerance) = self.mutation {
             entries.retain(|(body, state)| !nearly(stored.get(*body), state.as_ref(), tolerance));
         }
         arrived.visit(&entries, &mut self.areas);
         if !effects.is_empty() {
-            self.effects.insert(arrival, effects);
+            Arc::make_mut(&mut self.effects).insert(arrival, effects);
         }
 
         let (new, changed) = stored.with_entries(&entries, &table);
         if extended {
-            self.tables.push_back(new);
+            self.tables.push(new);
         } else {
             if !changed.is_empty() && !is_last {
                 self.stale.entry(arrival).or_default().basis.get_or_insert(stored);
             }
-            self.set_table(arrival, new);
+            self.tables.set(arrival, new);
         }
         let due = group.members.iter().zip(&group.due).filter(|(_, due)| **due);
         let recomputed = due.filter(|(member, _)| member.body.kind != BodyKind::Fixed).count();
@@ -138,6 +143,7 @@ impl Timeline {
             extended,
         };
         self.count(&done, report.quarantined);
+        self.fit_memory();
         done
     }
 }

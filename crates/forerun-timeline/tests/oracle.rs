@@ -29,7 +29,7 @@ struct Session {
 /// Edits of all kinds in the past, the present and the future, between frames of work and in batches; some arrive late and out of
 /// order. Then everything is worked off.
 fn session(bodies: &[BodyDef], seed: u64, frames: u64) -> Session {
-    let settings = TimelineSettings { lookahead: 25, past: 30, area_m: None };
+    let settings = TimelineSettings { lookahead: 25, past: 30, ..TimelineSettings::default() };
     let mut timeline = Timeline::new(bodies, environment(seed), settings).expect("bodies are possible");
     let mut random = Random::new(seed);
     let mut commands = Vec::new();

@@ -87,7 +87,8 @@ pub struct Decoupled {
     commands: SyncSender<Command>,
     refusals: Receiver<(CommandKey, CommandError)>,
     frame_seconds: f64,
-    lookahead: u32,
+    /// How far ahead physics may be. Seconds.
+    lookahead_s: f64,
     pace: Pace,
     blend: Blend,
     next_body: BodyId,
@@ -148,7 +149,7 @@ impl Decoupled {
             commands,
             refusals,
             frame_seconds,
-            lookahead,
+            lookahead_s: f64::from(lookahead) * frame_seconds,
             pace: Pace::starting_at(displayed.seconds(snapshot.frame_seconds())),
             blend: Blend::default(),
             next_body,
@@ -246,13 +247,12 @@ impl Decoupled {
 
     fn supply(&self, published: &Published) -> Supply {
         let snapshot = &published.snapshot;
-        let horizon = snapshot.horizon();
         let frame_seconds = snapshot.frame_seconds();
         Supply {
             oldest_s: snapshot.oldest().seconds(frame_seconds),
-            horizon_s: horizon.seconds(frame_seconds),
-            lookahead_s: f64::from(self.lookahead) * self.frame_seconds,
-            full: horizon >= self.displayed_frame().plus(u64::from(self.lookahead)),
+            horizon_s: snapshot.horizon().seconds(frame_seconds),
+            lookahead_s: self.lookahead_s,
+            full: self.shared.is_physics_done(),
         }
     }
 

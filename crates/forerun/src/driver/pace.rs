@@ -29,7 +29,7 @@ pub(super) struct Supply {
     pub(super) horizon_s: f64,
     /// How far ahead physics may be.
     pub(super) lookahead_s: f64,
-    /// Whether it is that far: then it waits for the display, and not the display for it.
+    /// Whether it has done all that it may: then it waits for the display, and not the display for it.
     pub(super) full: bool,
 }
 

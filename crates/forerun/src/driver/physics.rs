@@ -43,6 +43,8 @@ pub(super) struct Shared {
     /// Pictures asked for so far.
     pictures: AtomicU64,
     stopping: AtomicBool,
+    /// Whether physics has done all that it may for what the display last told it.
+    done: AtomicBool,
     sleeper: OnceLock<Thread>,
 }
 
@@ -62,6 +64,7 @@ impl Shared {
             display: AtomicU64::new(0),
             pictures: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
+            done: AtomicBool::new(false),
             sleeper: OnceLock::new(),
         }
     }
@@ -71,7 +74,14 @@ impl Shared {
         // Unparking orders these stores before what the woken thread reads; a busy one reads them a frame later, which is soon enough.
         self.display.store(frame.0, Ordering::Relaxed);
         self.pictures.fetch_add(1, Ordering::Relaxed);
+        // Physics that is not even given a processor has not done its work.
+        self.done.store(false, Ordering::Relaxed);
         self.wake();
+    }
+
+    /// Whether physics waits for the display.
+    pub(super) fn is_physics_done(&self) -> bool {
+        self.done.load(Ordering::Relaxed)
     }
 
     /// How far back commands have thrown the physics since the last call; none when no command came.
@@ -144,7 +154,11 @@ impl Physics {
                     (self.hinder)();
                     self.publish();
                 }
-                Progress::Idle => std::thread::park(),
+                Progress::Idle => {
+                    self.shared.done.store(true, Ordering::Relaxed);
+                    std::thread::park();
+                    self.shared.done.store(false, Ordering::Relaxed);
+                }
             }
         }
     }
