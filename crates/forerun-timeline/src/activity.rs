@@ -6,6 +6,7 @@ use forerun_dynamics::{BodyId, bounds};
 use forerun_geometry::{Aabb, Vec3};
 
 use crate::areas::Area;
+use crate::snapshot::Doubt;
 use crate::{Frame, Timeline};
 
 impl Timeline {
@@ -14,7 +15,7 @@ impl Timeline {
     #[must_use]
     pub fn area_clocks(&self) -> Vec<(Area, Frame)> {
         let mut clocks: BTreeMap<Area, Frame> = BTreeMap::new();
-        for (body, frame) in self.doubtful() {
+        for Doubt { body, known_to: frame, .. } in self.doubtful() {
             for area in self.bound(body, frame).into_iter().flat_map(|bound| self.areas.covered(&bound)) {
                 let clock = clocks.entry(area).or_insert(frame);
                 *clock = frame.min(*clock);

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use forerun_dynamics::{Body, BodyId, BodyState};
 use forerun_geometry::{Pose, Vec3};
 
+use crate::commanding::FrameEffects;
 use crate::definitions::Definitions;
 use crate::tables::Tables;
 use crate::{Frame, Timeline, sample};
@@ -49,8 +50,20 @@ pub struct Snapshot {
     valid_to: Frame,
     pub(crate) tables: Tables,
     definitions: Arc<Definitions>,
-    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body.
-    pub(crate) doubtful: Vec<(BodyId, Frame)>,
+    /// The bodies that wait to be recomputed. Sorted by body.
+    pub(crate) doubtful: Vec<Doubt>,
+    /// What the commands of each frame did.
+    pub(crate) effects: Arc<BTreeMap<Frame, FrameEffects>>,
+}
+
+/// A body that waits to be recomputed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Doubt {
+    pub(crate) body: BodyId,
+    /// The last frame at which it is known to be true.
+    pub(crate) known_to: Frame,
+    /// Whether it is known where the step from there leads, and only what commands then do to it is not.
+    pub(crate) arrives: bool,
 }
 
 impl Timeline {
@@ -62,19 +75,22 @@ impl Timeline {
             tables: self.tables.clone(),
             definitions: Arc::clone(&self.definitions),
             doubtful: self.doubtful(),
+            effects: Arc::clone(&self.effects),
         })
     }
 
-    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body. There may be
-    /// more: whom these will reach is not known yet.
-    pub(crate) fn doubtful(&self) -> Vec<(BodyId, Frame)> {
+    /// The bodies that wait to be recomputed. Sorted by body. There may be more: whom these will reach is not known yet.
+    pub(crate) fn doubtful(&self) -> Vec<Doubt> {
         let mut doubtful = BTreeMap::new();
         for (frame, stale) in &self.stale {
+            let body_now = |body| self.definitions.body(body, *frame);
+            let stepped = stale.stepped_otherwise(self.table(*frame), body_now);
             for body in self.out_of_date(*frame, stale) {
-                doubtful.entry(body).or_insert(*frame);
+                let arrives = stepped.binary_search(&body).is_err();
+                doubtful.entry(body).or_insert(Doubt { body, known_to: *frame, arrives });
             }
         }
-        doubtful.into_iter().collect()
+        doubtful.into_values().collect()
     }
 }
 
@@ -120,11 +136,13 @@ impl Snapshot {
         self.tables.get(frame).into_iter().flat_map(|table| table.iter().map(|(body, _)| body))
     }
 
-    /// The body at a time (seconds since frame 0): exactly the stored state at a frame, between two of them interpolated, past the
-    /// last one that is known held. `None` where the body does not exist.
+    /// The body at a time (seconds since frame 0): exactly the stored state at a frame; between two of them interpolated towards where the
+    /// step leads, so that what a command does to a body is seen at the command's frame and not before; past the last one that is
+    /// known held. `None` where the body does not exist.
     #[must_use]
     pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
-        self.sample_at(body, self.moment(seconds))
+        let moment = self.moment(seconds);
+        self.sample_at(body, moment, self.effects.get(&moment.frame.next()))
     }
 
     /// All bodies at a time, in the order of their ids. `samples` is emptied first and keeps its memory.
@@ -135,17 +153,19 @@ impl Snapshot {
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
         if !self.doubtful.is_empty() {
-            bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
+            bodies.extend(self.doubtful.iter().map(|doubt| doubt.body));
             bodies.sort_unstable();
             bodies.dedup();
         }
-        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
+        let commanded = self.effects.get(&moment.frame.next());
+        let sampled = |body| Some((body, self.sample_at(body, moment, commanded)?));
+        samples.extend(bodies.into_iter().filter_map(sampled));
     }
 
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
     #[must_use]
     pub fn queue_min(&self, seconds: f64) -> u64 {
-        let shortest = self.doubtful.iter().map(|(_, frame)| *frame).min();
+        let shortest = self.doubtful.iter().map(|doubt| doubt.known_to).min();
         shortest.unwrap_or_else(|| self.horizon()).since(self.moment(seconds).frame)
     }
 
@@ -155,7 +175,7 @@ impl Snapshot {
         // Bodies that wait to be recomputed have fewer; when all of them wait, the longest counts.
         let last = self.horizon();
         let waiting = self.bodies_at(last).all(|body| self.known_to(body) < last);
-        let longest = self.doubtful.iter().map(|(_, frame)| *frame).max().filter(|_| waiting);
+        let longest = self.doubtful.iter().map(|doubt| doubt.known_to).max().filter(|_| waiting);
         longest.unwrap_or(last).since(self.moment(seconds).frame)
     }
 
@@ -170,21 +190,29 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
-    /// The last frame at which a body is known to be true.
-    fn known_to(&self, body: BodyId) -> Frame {
-        let found = self.doubtful.binary_search_by_key(&body, |(id, _)| *id);
-        found.map_or_else(|_| self.horizon(), |index| self.doubtful[index].1)
+    fn doubt(&self, body: BodyId) -> Option<&Doubt> {
+        let found = self.doubtful.binary_search_by_key(&body, |doubt| doubt.body);
+        found.ok().map(|index| &self.doubtful[index])
     }
 
-    fn sample_at(&self, id: BodyId, moment: Moment) -> Option<Sample> {
+    /// The last frame at which a body is known to be true.
+    fn known_to(&self, body: BodyId) -> Frame {
+        self.doubt(body).map_or_else(|| self.horizon(), |doubt| doubt.known_to)
+    }
+
+    /// A body at a moment; `commanded` is what commands do at the frame after it.
+    fn sample_at(&self, id: BodyId, moment: Moment, commanded: Option<&FrameEffects>) -> Option<Sample> {
         let known_to = self.known_to(id);
         let Moment { frame, part } = moment;
-        if frame > known_to || (frame == known_to && part > 0.0) {
+        let arrives = self.doubt(id).is_some_and(|doubt| doubt.arrives);
+        if frame > known_to || (frame == known_to && part > 0.0 && !arrives) {
             return self.sample_late(id, moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
         let state = self.state(id, frame)?;
-        let shown = match self.state(id, frame.next()) {
+        // Where the step leads, before the commands: nothing that is shown before their frame depends on those.
+        let arrived = commanded.and_then(|effects| effects.get(&id)?.arrived.as_ref());
+        let shown = match arrived.or_else(|| self.state(id, frame.next())) {
             Some(next) if part > 0.0 => {
                 sample::between((state, next), part, body, &self.definitions.environment(frame))
             }

@@ -8,8 +8,8 @@ use crate::{Frame, Snapshot};
 
 impl Snapshot {
     /// The bodies that the two snapshots may show in different places at a time (seconds). Sorted. There may be more than truly are: those with
-    /// other states at the frames around the time, and those that wait in either to be recomputed. Costs a look at the blocks of
-    /// states that the two do not share.
+    /// other states at the frames around the time, those that commands act on there, and those that wait in either to be recomputed.
+    /// Costs a look at the blocks of states that the two do not share.
     #[must_use]
     pub fn may_differ(&self, other: &Snapshot, seconds: f64) -> Vec<BodyId> {
         let moment = self.moment(seconds);
@@ -19,8 +19,9 @@ impl Snapshot {
             bodies.extend(self.differing_at(other, next));
         }
         for snapshot in [self, other] {
-            let waiting = snapshot.doubtful.iter().filter(|(_, known_to)| *known_to < next);
-            bodies.extend(waiting.map(|(body, _)| *body));
+            let waiting = snapshot.doubtful.iter().filter(|doubt| doubt.known_to < next);
+            bodies.extend(waiting.map(|doubt| doubt.body));
+            bodies.extend(snapshot.effects.get(&next).into_iter().flat_map(|effects| effects.keys()));
         }
         bodies.sort_unstable();
         bodies.dedup();
