@@ -25,20 +25,17 @@ impl Timeline {
     }
 
     /// How many areas are active at a stored frame: a body that moved to where it is since the frame before is in them. 0 when the
-    /// frame is not stored. Bodies over a great many areas are left out.
+    /// frame is not stored. Bodies over a great many areas are left out. Costs in proportion to the bodies that moved.
     #[must_use]
     pub fn areas_active(&self, frame: Frame) -> u32 {
         if frame < self.oldest() || frame > self.horizon() {
             return 0;
         }
-        let mut moving = vec![false; self.names()];
-        for body in self.moving(frame) {
-            moving[body.0 as usize] = true;
-        }
-        self.areas.count(frame, |body, area| {
-            moving[body.0 as usize]
-                && self.bound(body, frame).is_some_and(|bound| self.areas.covers(&bound, area))
-        })
+        let bounds = self.moving(frame).into_iter().filter_map(|body| self.bound(body, frame));
+        let mut areas: Vec<Area> = bounds.flat_map(|bound| self.areas.covered(&bound)).collect();
+        areas.sort_unstable();
+        areas.dedup();
+        areas.len() as u32
     }
 
     /// The bodies whose state is not that of the frame before; at the oldest frame, that have a velocity.

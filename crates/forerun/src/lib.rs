@@ -74,8 +74,8 @@ pub use forerun_scene as scene;
 pub use forerun_timeline as timeline;
 
 pub use driver::{
-    Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, FrameNote, Offset, Picture,
-    StepLimits, Threads, ThreadsError,
+    AdoptError, Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, Fork,
+    FrameNote, Hinder, Offset, Picture, Refusal, StepLimits, Threads, ThreadsError,
 };
 pub use forerun_dynamics::{
     Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, Mass, Material,
@@ -85,7 +85,7 @@ pub use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Sphere};
 pub use forerun_geometry::{Pose, Quat, Shape, Vec3};
 pub use forerun_scene::{Scene, SceneError};
 pub use forerun_timeline::{
-    Change, Command, CommandError, CommandKey, Frame, Sample, Snapshot, Timeline, TimelineSettings,
+    Change, Command, CommandError, CommandKey, Frame, Order, Sample, Snapshot, Timeline, TimelineSettings,
 };
 pub use playback::{
     DriverKind, Playback, PlaybackError, PlaybackSettings, QueueRow, Report, play, write_queue_csv,

@@ -3,8 +3,8 @@
 use forerun::dynamics::Spring;
 use forerun::timeline::{Progress, Sample};
 use forerun::{
-    BodyDef, BodyId, BodyKind, Change, Cuboid, Environment, Frame, Material, Pose, Quat, Shape, Snapshot, Sphere,
-    Timeline, TimelineSettings, Vec3,
+    BodyDef, BodyId, BodyKind, Change, Cuboid, Environment, Frame, Material, Pose, Quat, Shape, Snapshot,
+    Sphere, Timeline, TimelineSettings, Vec3,
 };
 
 const FRAME_S: f64 = (1.0_f32 / 60.0) as f64;

@@ -2,22 +2,23 @@
 //!
 //! Promise: no call here waits for a step. What the physics knows comes by one atomic read, what the user does goes by a bounded queue.
 
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use forerun_timeline::{
-    Change, Command, CommandError, CommandKey, Frame, Sample, Snapshot, Stats, Timeline,
-};
+use forerun_timeline::{Frame, Sample, Timeline};
 
 use super::blend::{Blend, Blending, Offset};
 use super::driver_error::DriverError;
-use super::frame_notes::FrameNote;
+use super::fork::{Fork, Names};
+use super::hearing::{Heard, Message};
 use super::pace::{Pace, Supply};
 use super::physics::{self, Hinder, Published, Shared};
+use super::picture::Picture;
 use super::reach::Reach;
-use crate::{BodyDef, BodyId, Threads};
+use super::refusal::Refusal;
+use crate::{BodyId, Threads};
 
 /// The largest queue: its memory is taken at the start, and a queue without room would never be drained.
 const COMMANDS_MAX: usize = 65_536;
@@ -25,57 +26,28 @@ const COMMANDS_MAX: usize = 65_536;
 /// The fastest that a display may go. No physics feeds more, and times stay exact.
 const SPEED_MAX: f64 = 1000.0;
 
-/// A picture whose clock went slower than this was slowed; less is rounding.
-const FULL_RATE: f64 = 1.0 - 1e-6;
+/// Forks that may wait to be taken.
+const FORKS_MAX: usize = 16;
 
 /// How the physics thread works.
 #[derive(Debug)]
 pub struct DecoupledSettings {
     /// Threads of the physics.
     pub threads: Threads,
-    /// Commands that may wait for the physics; more are refused. 1 to 65536, default 1024.
+    /// Orders that may wait for the physics; more are refused. 1 to 65536, default 1024.
     pub command_capacity: usize,
     /// Makes every computed frame this much slower, to see what a slow scene does. Default 0.
     pub slow_down: Duration,
+    /// Counts the areas in which a body moved, for every frame ([`FrameNote::areas_active`](crate::FrameNote::areas_active)): costs a
+    /// look at each body that moves. Default false.
+    pub count_areas: bool,
 }
 
 impl DecoupledSettings {
     /// The defaults with these threads.
     #[must_use]
     pub const fn new(threads: Threads) -> Self {
-        DecoupledSettings { threads, command_capacity: 1024, slow_down: Duration::ZERO }
-    }
-}
-
-/// What there is to draw at a display time.
-#[derive(Clone, Debug)]
-pub struct Picture {
-    /// All that physics knew when the picture was taken: sample it at `time_s`.
-    pub snapshot: Arc<Snapshot>,
-    /// Display time T. Seconds; never less than in the picture before, and never past the horizon.
-    pub time_s: f64,
-    /// What T would be if physics had never been late. Seconds.
-    pub wished_s: f64,
-    /// The caller's clock when the picture was asked for. Seconds.
-    pub real_s: f64,
-    /// How fast T went since the picture before, against the caller's clock times the speed: below 1 where physics was late, at most 1.05
-    /// where lost time is being made good. 1 in the first picture and after [`Decoupled::seek`].
-    pub rate: f64,
-    /// The frame shown: the last one at or before `time_s`.
-    pub frame: Frame,
-    /// How that frame was computed; none while it is not.
-    pub note: Option<FrameNote>,
-    /// How far back commands threw the physics since the picture before: the last frame that was true for all bodies right after.
-    pub dropped_to: Option<Frame>,
-    /// Work of the physics so far.
-    pub stats: Stats,
-}
-
-impl Picture {
-    /// Whether the clock was slowed because physics was late.
-    #[must_use]
-    pub fn is_slowed(&self) -> bool {
-        self.rate < FULL_RATE
+        DecoupledSettings { threads, command_capacity: 1024, slow_down: Duration::ZERO, count_areas: false }
     }
 }
 
@@ -84,15 +56,15 @@ impl Picture {
 pub struct Decoupled {
     shared: Arc<Shared>,
     physics: Option<JoinHandle<()>>,
-    commands: SyncSender<Command>,
-    refusals: Receiver<(CommandKey, CommandError)>,
+    messages: SyncSender<Message>,
+    refusals: Receiver<Refusal>,
+    forks: Receiver<Fork>,
     frame_seconds: f64,
     /// How far ahead physics may be. Seconds.
     lookahead_s: f64,
     pace: Pace,
     blend: Blend,
-    next_body: BodyId,
-    next_sequence: u64,
+    names: Arc<Names>,
 }
 
 impl Decoupled {
@@ -110,8 +82,11 @@ impl Decoupled {
         Self::start_hindered(timeline, settings, Box::new(sleep))
     }
 
-    /// The same with something done after every computed frame.
-    fn start_hindered(
+    /// The same with something done after every computed frame, in the physics thread: to see what a stall does.
+    ///
+    /// # Errors
+    /// As [`Decoupled::start`].
+    pub fn start_hindered(
         mut timeline: Timeline,
         settings: DecoupledSettings,
         hinder: Hinder,
@@ -121,22 +96,25 @@ impl Decoupled {
             let message = format!("must be from 1 to {COMMANDS_MAX}, is {capacity}");
             return Err(DriverError::Setting { field: "command_capacity", message });
         }
-        let (commands, command_queue) = sync_channel(capacity);
+        let (messages, message_queue) = sync_channel(capacity);
+        let (fork_queue, forks) = sync_channel(FORKS_MAX);
         let (refusal_queue, refusals) = sync_channel(capacity);
         let snapshot = timeline.snapshot();
         let frame_seconds = f64::from(snapshot.frame_seconds());
         let displayed = timeline.display();
-        let next_body = timeline.reserve_body();
-        let next_sequence = timeline.next_sequence();
+        let names = Names::after(&mut timeline);
         let lookahead = timeline.settings().lookahead;
         let reach = Reach::new(lookahead);
         let shared = Arc::new(Shared::new(&timeline));
         let physics = physics::Physics {
             timeline,
             shared: Arc::clone(&shared),
-            commands: command_queue,
+            messages: message_queue,
             refusals: refusal_queue,
+            forks: fork_queue,
+            heard: Heard::new(Arc::clone(&names)),
             command_capacity: capacity,
+            count_areas: settings.count_areas,
             reach,
             pictures: 0,
             hinder,
@@ -146,14 +124,14 @@ impl Decoupled {
         Ok(Decoupled {
             shared,
             physics: Some(thread),
-            commands,
+            messages,
             refusals,
+            forks,
             frame_seconds,
             lookahead_s: f64::from(lookahead) * frame_seconds,
             pace: Pace::starting_at(displayed.seconds(snapshot.frame_seconds())),
             blend: Blend::default(),
-            next_body,
-            next_sequence,
+            names,
         })
     }
 
@@ -256,57 +234,6 @@ impl Decoupled {
         }
     }
 
-    /// A change by the local user, from the first frame after the displayed one on: nothing on the screen is taken back.
-    ///
-    /// # Errors
-    /// [`DriverError::QueueFull`] when too many commands wait; [`DriverError::Panicked`]. Whether the change is possible is found
-    /// out by the physics thread: see [`Decoupled::refusals`].
-    pub fn change(&mut self, change: Change) -> Result<CommandKey, DriverError> {
-        let key =
-            CommandKey { frame: self.displayed_frame().next(), source: 0, sequence: self.next_sequence };
-        self.submit(Command { key, change })?;
-        self.next_sequence = self.next_sequence.saturating_add(1);
-        Ok(key)
-    }
-
-    /// Adds a body from the first frame after the displayed one on.
-    ///
-    /// # Errors
-    /// As [`Decoupled::change`].
-    pub fn add(&mut self, def: BodyDef) -> Result<BodyId, DriverError> {
-        let body = self.reserve_body();
-        self.change(Change::Add { body, def: Box::new(def) })?;
-        Ok(body)
-    }
-
-    /// A name for a body to be added by a command of one's own. The timeline learns it with that command.
-    pub fn reserve_body(&mut self) -> BodyId {
-        let body = self.next_body;
-        self.next_body = BodyId(body.0 + 1);
-        body
-    }
-
-    /// A command with a frame of its own, possibly in the past, as they come from a network. Local changes use source 0.
-    ///
-    /// # Errors
-    /// As [`Decoupled::change`].
-    pub fn submit(&self, command: Command) -> Result<(), DriverError> {
-        self.alive()?;
-        match self.commands.try_send(command) {
-            Ok(()) => {
-                self.shared.wake();
-                Ok(())
-            }
-            Err(TrySendError::Full(_)) => Err(DriverError::QueueFull),
-            Err(TrySendError::Disconnected(_)) => Err(self.failure()),
-        }
-    }
-
-    /// Commands that the timeline refused since the last call, and why. When nobody asks for long, the latest are lost.
-    pub fn refusals(&mut self) -> Vec<(CommandKey, CommandError)> {
-        self.refusals.try_iter().collect()
-    }
-
     /// The last frame at or before the display time.
     fn displayed_frame(&self) -> Frame {
         // As in the dissertation's algorithm 1, a time within a hair of a frame is that frame: k·h/h may round to below k. The hair is
@@ -339,5 +266,8 @@ impl Drop for Decoupled {
     }
 }
 
+#[cfg(test)]
+mod order_tests;
+mod orders;
 #[cfg(test)]
 mod tests;

@@ -2,14 +2,16 @@
 
 use std::sync::Weak;
 
-use super::*;
-use crate::{Clock, Cuboid, Environment, Pose, Shape, Sphere, TimelineSettings, Vec3};
+use forerun_timeline::{Change, CommandError};
 
-const LOOKAHEAD: u32 = 20;
-const FRAME_S: f64 = (1.0_f32 / 60.0) as f64;
+use super::*;
+use crate::{BodyDef, Clock, Cuboid, Environment, Pose, Shape, Sphere, TimelineSettings, Vec3};
+
+pub(super) const LOOKAHEAD: u32 = 20;
+pub(super) const FRAME_S: f64 = (1.0_f32 / 60.0) as f64;
 
 /// A ball above the ground and another far away.
-fn timeline() -> Timeline {
+pub(super) fn timeline() -> Timeline {
     let ball = Shape::Sphere(Sphere { radius: 0.5 });
     let bodies = [
         BodyDef::fixed(Shape::Cuboid(Cuboid { half_extents: Vec3::new(50.0, 1.0, 50.0) })).at(Vec3::NEG_Y),
@@ -30,7 +32,7 @@ fn slow(millis: u64) -> Decoupled {
 }
 
 /// Asks until the answer is yes, for ten seconds at most.
-fn eventually(mut ask: impl FnMut() -> bool) -> bool {
+pub(super) fn eventually(mut ask: impl FnMut() -> bool) -> bool {
     let clock = Clock::system();
     while clock.now() < Duration::from_secs(10) {
         if ask() {
@@ -41,13 +43,13 @@ fn eventually(mut ask: impl FnMut() -> bool) -> bool {
     false
 }
 
-fn full(driver: &Decoupled) -> bool {
+pub(super) fn full(driver: &Decoupled) -> bool {
     let picture = driver.last_picture();
     picture.snapshot.valid_to() == picture.frame.plus(u64::from(LOOKAHEAD))
 }
 
 /// At time 0, with as much ahead as there may be.
-fn filled() -> Decoupled {
+pub(super) fn filled() -> Decoupled {
     let mut driver = slow(0);
     driver.show(0.0).expect("physics lives");
     assert!(eventually(|| full(&driver) && driver.shared.is_physics_done()));
@@ -215,7 +217,7 @@ fn a_command_that_the_timeline_refuses_comes_back_with_the_reason() {
         refusals.extend(driver.refusals());
         !refusals.is_empty()
     }));
-    assert_eq!(refusals, [(key, CommandError::UnknownBody(BodyId(77)))]);
+    assert_eq!(refusals, [Refusal::Submit(key, CommandError::UnknownBody(BodyId(77)))]);
 }
 
 #[test]
