@@ -5,8 +5,8 @@
 
 use std::sync::Arc;
 
-use forerun_dynamics::step::{Group, advance};
-use forerun_dynamics::{BodyId, BodyKind, BodyState, Observer, Stage};
+use forerun_dynamics::step::{Group, advance, advance_touching};
+use forerun_dynamics::{BodyId, BodyKind, BodyState, Environment, Observer, Stage, StepReport, Touches};
 
 use crate::Frame;
 use crate::affected::{Affected, Inputs, Mutation, affected};
@@ -16,6 +16,7 @@ use crate::frame_table::Entry;
 use crate::stale::Stale;
 use crate::stats::Advance;
 use crate::timeline::{Progress, Timeline};
+use crate::touch_table::Told;
 
 impl Timeline {
     /// Computes one frame: the earliest that is out of date, or else a new one while the lookahead has room. Between two calls all
@@ -95,11 +96,8 @@ impl Timeline {
         let group = affected(&inputs, out_of_date, &mut self.scratch);
         observer.after(Stage::Collisions);
 
-        let (next, report) = advance(
-            &Group { members: &group.members, pairs: &group.pairs, contacts: &group.contacts },
-            &definitions.environment(frame),
-            observer,
-        );
+        let environment = definitions.environment(frame);
+        let (next, report, touches) = self.step(&group, &environment, observer);
         let is_last = arrival >= self.horizon();
         let arrived = Arrival {
             frame: arrival,
@@ -110,6 +108,8 @@ impl Timeline {
             ask_everybody: self.recompute_all,
         };
         let entries = entries(&group, &next, out_of_date);
+        let outdated = stale.everyone.then(|| stored.touches());
+        let told = touches.map(|touches| Told::new(&entries, &group, &touches, table.touches(), outdated));
         // Forks and later edits share the effects: to touch them is to copy.
         let mut effects = match self.effects.contains_key(&arrival) {
             true => Arc::make_mut(&mut self.effects).remove(&arrival).unwrap_or_default(),
@@ -124,7 +124,10 @@ impl Timeline {
             Arc::make_mut(&mut self.effects).insert(arrival, effects);
         }
 
-        let (new, changed) = stored.with_entries(&entries, &table);
+        let (mut new, changed) = stored.with_entries(&entries, &table);
+        if let Some(told) = told {
+            new = new.with_touches(&told, &table);
+        }
         if extended {
             self.tables.push(new);
         } else {
@@ -145,6 +148,23 @@ impl Timeline {
         self.count(&done, report.quarantined);
         self.fit_memory();
         done
+    }
+
+    /// The next states of a group, and where that is recorded, who touched whom.
+    fn step(
+        &self,
+        group: &Affected,
+        environment: &Environment,
+        observer: &mut dyn Observer,
+    ) -> (Vec<BodyState>, StepReport, Option<Touches>) {
+        let step = Group { members: &group.members, pairs: &group.pairs, contacts: &group.contacts };
+        if self.settings.record_contacts {
+            let mut touches = Touches::default();
+            let (next, report) = advance_touching(&step, environment, observer, &mut touches);
+            return (next, report, Some(touches));
+        }
+        let (next, report) = advance(&step, environment, observer);
+        (next, report, None)
     }
 }
 
