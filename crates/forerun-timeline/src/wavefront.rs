@@ -6,7 +6,9 @@
 use std::sync::Arc;
 
 use forerun_dynamics::step::{Group, advance, advance_touching};
-use forerun_dynamics::{BodyId, BodyKind, BodyState, Environment, Observer, Stage, StepReport, Touches};
+use forerun_dynamics::{
+    BodyId, BodyKind, BodyState, Environment, Observer, Stage, StepReport, Touches, Unobserved,
+};
 
 use crate::Frame;
 use crate::affected::{Affected, Inputs, Mutation, affected};
@@ -22,7 +24,7 @@ impl Timeline {
     /// Computes one frame: the earliest that is out of date, or else a new one while the lookahead has room. Between two calls all
     /// frames up to [`valid_to`](Timeline::valid_to) are true, and commands may come.
     pub fn advance(&mut self) -> Progress {
-        self.advance_observed(&mut forerun_dynamics::Unobserved)
+        self.advance_observed(&mut Unobserved)
     }
 
     /// As [`Timeline::advance`], with an observer of the stages of the step.
@@ -97,7 +99,7 @@ impl Timeline {
         observer.after(Stage::Collisions);
 
         let environment = definitions.environment(frame);
-        let (next, report, touches) = self.step(&group, &environment, observer);
+        let (next, report, touches) = self.step(frame, &group, &environment, observer);
         let is_last = arrival >= self.horizon();
         let arrived = Arrival {
             frame: arrival,
@@ -153,6 +155,7 @@ impl Timeline {
     /// The next states of a group, and where that is recorded, who touched whom.
     fn step(
         &self,
+        frame: Frame,
         group: &Affected,
         environment: &Environment,
         observer: &mut dyn Observer,
@@ -161,11 +164,27 @@ impl Timeline {
         if self.settings.record_contacts {
             let mut touches = Touches::default();
             let (next, report) = advance_touching(&step, environment, observer, &mut touches);
+            if frame == self.oldest() && touches.resting.contains(&true) {
+                touches = touches_of_all(&step, environment);
+            }
             return (next, report, Some(touches));
         }
         let (next, report) = advance(&step, environment, observer);
         (next, report, None)
     }
+}
+
+/// What a step tells about touches when nothing counts as a fixpoint: the frame before may be none that tells.
+fn touches_of_all(step: &Group, environment: &Environment) -> Touches {
+    let mut members = step.members.to_vec();
+    for member in &mut members {
+        // The last frame of rest that is solved; nothing else reads the counter.
+        member.state.rest = member.state.rest.min(environment.settings.rest_frames());
+    }
+    let mut touches = Touches::default();
+    let step = Group { members: &members, ..*step };
+    let _ = advance_touching(&step, environment, &mut Unobserved, &mut touches);
+    touches
 }
 
 /// The next states of the due members, and `None` for the out-of-date bodies that do not exist. Sorted.

@@ -8,8 +8,8 @@ use forerun_dynamics::{BodyDef, BodyId, Environment};
 use forerun_geometry::{Pose, Shape, Vec3};
 use forerun_timeline::check::{Random, random_change};
 use forerun_timeline::{
-    Change, Command, CommandKey, ContactEvent, ContactKind, ContactListener, ContactNotice, Frame, LateEdits,
-    ListenerSettings, Progress, Snapshot, Timeline, TimelineSettings, Touch,
+    Change, Command, CommandKey, ContactEvent, ContactKind, ContactListener, ContactNotice, Frame, Keep,
+    LateEdits, ListenerSettings, Progress, Snapshot, Timeline, TimelineSettings, Touch,
 };
 
 const SETTINGS: TimelineSettings =
@@ -147,6 +147,50 @@ fn recording_changes_no_state_and_not_recording_keeps_nothing() {
         assert!((0..=without.horizon().0).all(|frame| snapshot.contacts(Frame(frame)).is_empty()));
         assert_eq!(snapshot.contact_events(0.0, 9.0), []);
     }
+}
+
+/// A timeline that is made again of its parts: in the middle of things, and when all has long been at rest.
+#[test]
+fn contacts_are_known_again_after_loading() {
+    let mut touches = 0;
+    for (scene, bodies) in scenes::all() {
+        let settings = TimelineSettings { lookahead: 30, past: 10, ..SETTINGS };
+        let mut timeline = Timeline::new(&bodies, environment(1), settings).unwrap();
+        for display in [8, 90] {
+            while timeline.display() < Frame(display) {
+                timeline.set_display(timeline.display().next());
+                run(&mut timeline);
+            }
+            for keep in [Keep::Commands, Keep::States] {
+                let mut again = Timeline::from_parts(timeline.parts(keep)).unwrap();
+                run(&mut again);
+                assert_eq!((again.oldest(), again.horizon()), (timeline.oldest(), timeline.horizon()));
+                assert_eq!(again.diff(&timeline), None);
+                let (a, b) = (again.snapshot(), timeline.snapshot());
+                // Those of the oldest frame are not known: the step that led to it is not done again.
+                for frame in (timeline.oldest().0 + 1..=timeline.horizon().0).map(Frame) {
+                    let (a, b) = (a.contacts(frame), b.contacts(frame));
+                    let same = a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a.same_bits(b));
+                    assert!(same, "{scene}, {keep:?}, {frame}: {a:?} {b:?}");
+                    touches += a.len();
+                }
+            }
+        }
+    }
+    assert!(touches > 5000, "{touches}");
+}
+
+#[test]
+fn what_rests_costs_nothing() {
+    let mut timeline = Timeline::new(&scenes::piles(), environment(1), SETTINGS).unwrap();
+    let mut bytes = Vec::new();
+    for display in [60, 120, 200] {
+        timeline.set_display(Frame(display));
+        run(&mut timeline);
+        bytes.push(timeline.state_bytes());
+        assert_eq!(timeline.snapshot().contacts(timeline.horizon()).len(), 24);
+    }
+    assert!(bytes[2] == bytes[1] && bytes[1] < 20_000, "{bytes:?}");
 }
 
 /// Events by comparing whole lists.
