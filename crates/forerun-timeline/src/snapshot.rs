@@ -196,6 +196,11 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
+    /// The last frame that a display at a time (seconds) has reached; at least the oldest.
+    pub(crate) fn frame_by(&self, seconds: f64) -> Frame {
+        self.moment(seconds).frame
+    }
+
     /// What all samples of a time have in common.
     pub(crate) fn look_at(&self, seconds: f64) -> Look<'_> {
         let moment = self.moment(seconds);
