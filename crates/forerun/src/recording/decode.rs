@@ -83,8 +83,8 @@ fn recover(from: &mut dyn Read) -> Result<Recovered, RecordingError> {
             Err(error) => break Some(error),
         }
     };
-    match decoder.start.filter(|start| start.names.len() == decoder.names) {
-        Some(start) => Ok(Recovered { recording: Recording { start, events: decoder.events }, lost }),
+    match decoder.end(lost.is_none()) {
+        Some(recording) => Ok(Recovered { recording, lost }),
         // Whole, and without a start: nobody writes that.
         None => Err(lost.unwrap_or_else(|| {
             RecordingError::new(reader.offset, RecordingFault::Corrupt("there is no start".to_owned()))
@@ -110,11 +110,15 @@ enum Part {
 struct Decoder {
     part: Part,
     shapes: Vec<Shape>,
+    /// The first timeline, once something follows it.
     start: Option<TimelineParts>,
-    /// How many names there are to be.
-    names: usize,
-    last: Option<LastStates>,
     events: Vec<Event>,
+    /// The timeline that is being read.
+    building: Option<TimelineParts>,
+    /// How many names it is to have.
+    names: usize,
+    /// The last of its states.
+    last: Option<LastStates>,
 }
 
 impl Decoder {
@@ -122,10 +126,12 @@ impl Decoder {
     fn take(&mut self, record: Record) -> Result<(), String> {
         match record {
             Record::Start(value) => {
-                self.names = value.names as usize;
-                if self.start.replace(start_of(value)).is_some() {
-                    return Err("begins again".to_owned());
+                if self.building.is_some() {
+                    return Err("begins again before it is complete".to_owned());
                 }
+                self.names = value.names as usize;
+                self.building = Some(start_of(value));
+                (self.part, self.last) = (Part::Start, None);
             }
             Record::Shape(shape) => self.shapes.push(large_shape_of(shape, &self.shapes)?),
             Record::Names(names) => {
@@ -152,27 +158,56 @@ impl Decoder {
             Record::Frame(bytes) => self.frame(&bytes)?,
             Record::Order(order) => {
                 let order = order_of(order, &self.shapes)?;
-                self.at(Part::Events)?;
-                self.events.push(Event::Order(order));
+                self.event(Event::Order(order))?;
             }
             Record::Mark { display, oldest, frame, hash } => {
-                self.at(Part::Events)?;
                 let (display, oldest, frame) = (Frame(display), Frame(oldest), Frame(frame));
-                self.events.push(Event::Mark(Mark { display, oldest, frame, hash }));
+                self.event(Event::Mark(Mark { display, oldest, frame, hash }))?;
             }
             Record::End { .. } => {}
         }
         Ok(())
     }
 
-    /// The start, where a record of this part may stand here: parts do not come back, and the names are complete before the rest.
+    /// The timeline that is being read, where a record of this part may stand here: parts do not come back, and the names are
+    /// complete before the rest.
     fn at(&mut self, part: Part) -> Result<&mut TimelineParts, String> {
-        let start = self.start.as_mut().ok_or("there is no start before it")?;
-        if part < self.part || (part > Part::Names && start.names.len() != self.names) {
+        let building = self.building.as_mut().ok_or("there is no start before it")?;
+        if part < self.part || (part > Part::Names && building.names.len() != self.names) {
             return Err(format!("a record of {part:?} is out of place"));
         }
         self.part = part;
-        Ok(start)
+        Ok(building)
+    }
+
+    fn event(&mut self, event: Event) -> Result<(), String> {
+        if self.building.is_some() {
+            self.at(Part::Events)?;
+            self.complete();
+        }
+        if self.start.is_none() {
+            return Err("there is no start before it".to_owned());
+        }
+        self.events.push(event);
+        Ok(())
+    }
+
+    /// The timeline that is being read is complete, if it has all its names.
+    fn complete(&mut self) {
+        let names = self.names;
+        match self.building.take().filter(|building| building.names.len() == names) {
+            Some(first) if self.start.is_none() => self.start = Some(first),
+            Some(next) => self.events.push(Event::Restart(Box::new(next))),
+            None => {}
+        }
+    }
+
+    /// All that was read. Of a file that is cut in its first timeline that is what there is of it; another one that is cut does not count.
+    fn end(mut self, whole: bool) -> Option<Recording> {
+        if whole || self.start.is_none() {
+            self.complete();
+        }
+        Some(Recording { start: self.start?, events: self.events })
     }
 
     fn frame(&mut self, bytes: &[u8]) -> Result<(), String> {
