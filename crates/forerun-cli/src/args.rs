@@ -20,6 +20,8 @@ pub(crate) enum Command {
     View(ViewArgs),
     /// Play a scene against the clock; write queue.csv, report.json and charts
     Run(RunArgs),
+    /// Compute a recording again and compare it with its hashes, or save what can be read of a damaged one
+    Replay(ReplayArgs),
     /// Repeat an experiment of the dissertation, decoupled beside coupled
     Experiment(ExperimentArgs),
     /// List the built-in scenes, or print one as a file
@@ -75,6 +77,21 @@ pub(crate) struct RunArgs {
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// Print the report as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArgs {
+    /// A file that `forerun run SCENE --record FILE` or `save_timeline` wrote
+    pub(crate) file: PathBuf,
+    /// Threads of the physics [default: one per core]
+    #[arg(long, value_parser = threads(), conflicts_with = "recover")]
+    pub(crate) threads: Option<u16>,
+    /// Do not replay: write the part of FILE that can be read to this file
+    #[arg(long, value_name = "OUT")]
+    pub(crate) recover: Option<PathBuf>,
+    /// Print the result as JSON and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }
