@@ -121,7 +121,11 @@ impl Timeline {
             oldest,
             environment: self.definitions.environment(oldest),
             names: (0..self.names()).map(|name| self.name_parts(BodyId(name as u32))).collect(),
-            commands: self.log.iter().map(|(key, change)| Command { key: *key, change: change.clone() }).collect(),
+            commands: self
+                .log
+                .iter()
+                .map(|(key, change)| Command { key: *key, change: change.clone() })
+                .collect(),
             next_sequence: self.next_sequence,
             undo: self.undo.undo.clone(),
             redo: self.undo.redo.clone(),
@@ -177,10 +181,8 @@ impl Timeline {
         let mut entries: Vec<Entry> = Vec::new();
         for (name, part) in parts.names.iter().enumerate() {
             let id = u32::try_from(name).map_err(|_| wrong("names", "are more than there are ids"))?;
-            let body = make(part, &parts.environment).map_err(|error| PartsError {
-                place: format!("names[{name}].{}", error.place),
-                ..error
-            })?;
+            let body = make(part, &parts.environment)
+                .map_err(|error| PartsError { place: format!("names[{name}].{}", error.place), ..error })?;
             if let (Some(_), Some(BodyParts { state, .. })) = (&body, part.body) {
                 entries.push((BodyId(id), Some(state)));
             }
@@ -259,7 +261,8 @@ impl Timeline {
             let next = table.with_entries(changes, &table).0;
             if self.log.at(frame).next().is_some() {
                 if self.advance() == Progress::Idle || !next.differences(self.table(frame)).is_empty() {
-                    let message = "are not the states that the commands lead to: they were computed by another version";
+                    let message =
+                        "are not the states that the commands lead to: they were computed by another version";
                     return Err(wrong(format!("frames[{index}]"), message));
                 }
                 continue;

@@ -105,9 +105,7 @@ pub(crate) struct Arrow(i8, i8, i8, pub(crate) Size);
 
 impl Arrow {
     fn times(self, length: f32) -> Vec3 {
-        Vec3::new(f32::from(self.0), f32::from(self.1), f32::from(self.2))
-            * (length / 64.0)
-            * self.3.factor()
+        Vec3::new(f32::from(self.0), f32::from(self.1), f32::from(self.2)) * (length / 64.0) * self.3.factor()
     }
 }
 
@@ -194,11 +192,9 @@ impl What {
                 let material = Material { friction, static_friction: 1.5 * friction, restitution };
                 Change::SetMaterial { body: name(body), material }
             }
-            What::SetForce(body, force, torque) => Change::SetForce {
-                body: name(body),
-                force: force.times(9000.0),
-                torque: torque.times(900.0),
-            },
+            What::SetForce(body, force, torque) => {
+                Change::SetForce { body: name(body), force: force.times(9000.0), torque: torque.times(900.0) }
+            }
             What::SetGravityScale(body, size) => {
                 Change::SetGravityScale { body: name(body), scale: -0.5 * size.factor() }
             }

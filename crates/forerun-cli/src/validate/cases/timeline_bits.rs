@@ -12,12 +12,12 @@ const EDITS: u32 = 200;
 const THREADS: [u16; 3] = [1, 2, 4];
 /// The scenes, and the frames that are computed, kept and compared: fewer where all bodies are one island.
 const SCENES: [(&str, u32); 6] = [
-    ("many_pyramids", 300),
-    ("domino_lines:40", 600),
-    ("rings:100", 300),
+    ("many_pyramids", 120),
+    ("domino_lines:40", 300),
+    ("rings:100", 240),
     ("break", 600),
-    ("large_pyramid", 60),
-    ("chain", 600),
+    ("large_pyramid", 40),
+    ("chain", 300),
 ];
 
 pub(crate) fn run() -> Vec<Figure> {
