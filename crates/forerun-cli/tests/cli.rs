@@ -148,10 +148,10 @@ fn check_finds_no_difference_and_says_what_it_compared() {
 fn check_says_in_words_what_it_found_and_how_to_do_it_again() {
     let options = ["--settle", "20", "--display-step", "2", "--compare-every", "3"];
     let usual = ["check", "stack:3", "--edits", "7", "--frames", "30", "--threads", "1"];
-    let text = String::from_utf8(forerun(&[&usual[..], &options[..]].concat()).stdout).expect("text");
-    assert!(text.contains("--settle 20 --display-step 2 --compare-every 3"), "{text}");
-    assert!(text.contains("every state of every body has the bits of a full run"), "{text}");
-    assert!(text.contains("times cheaper than a full re-simulation"), "{text}");
+    let words = text(&forerun(&[&usual[..], &options[..]].concat()).stdout);
+    assert!(words.contains("--settle 20 --display-step 2 --compare-every 3"), "{words}");
+    assert!(words.contains("every state of every body has the bits of a full run"), "{words}");
+    assert!(words.contains("times cheaper than a full re-simulation"), "{words}");
 }
 
 #[test]
