@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyId, BodyState};
+use forerun_dynamics::{Body, BodyId, BodyState, Environment};
 use forerun_geometry::{Pose, Vec3};
 
 use crate::commanding::FrameEffects;
 use crate::definitions::Definitions;
+use crate::frame_table::FrameTable;
 use crate::tables::Tables;
 use crate::{Frame, Timeline, sample};
 
@@ -141,25 +142,25 @@ impl Snapshot {
     /// known held. `None` where the body does not exist.
     #[must_use]
     pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
-        let moment = self.moment(seconds);
-        self.sample_at(body, moment, self.effects.get(&moment.frame.next()))
+        self.sample_at(body, &self.look_at(seconds))
     }
 
     /// All bodies at a time, in the order of their ids. `samples` is emptied first and keeps its memory.
     pub fn sample_all(&self, seconds: f64, samples: &mut Vec<(BodyId, Sample)>) {
         samples.clear();
-        let moment = self.moment(seconds);
-        let frame = moment.frame.min(self.horizon());
+        let look = self.look_at(seconds);
+        let frame = look.moment.frame.min(self.horizon());
+        if self.doubtful.is_empty() {
+            let bodies = self.bodies_at(frame);
+            samples.extend(bodies.filter_map(|body| Some((body, self.sample_at(body, &look)?))));
+            return;
+        }
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
-        if !self.doubtful.is_empty() {
-            bodies.extend(self.doubtful.iter().map(|doubt| doubt.body));
-            bodies.sort_unstable();
-            bodies.dedup();
-        }
-        let commanded = self.effects.get(&moment.frame.next());
-        let sampled = |body| Some((body, self.sample_at(body, moment, commanded)?));
-        samples.extend(bodies.into_iter().filter_map(sampled));
+        bodies.extend(self.doubtful.iter().map(|doubt| doubt.body));
+        bodies.sort_unstable();
+        bodies.dedup();
+        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, &look)?))));
     }
 
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
@@ -190,7 +191,22 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
+    /// What all samples of a time have in common.
+    fn look_at(&self, seconds: f64) -> Look<'_> {
+        let moment = self.moment(seconds);
+        Look {
+            moment,
+            here: self.tables.get(moment.frame),
+            next: self.tables.get(moment.frame.next()),
+            commanded: self.effects.get(&moment.frame.next()),
+            environment: self.definitions.environment(moment.frame),
+        }
+    }
+
     fn doubt(&self, body: BodyId) -> Option<&Doubt> {
+        if self.doubtful.is_empty() {
+            return None;
+        }
         let found = self.doubtful.binary_search_by_key(&body, |doubt| doubt.body);
         found.ok().map(|index| &self.doubtful[index])
     }
@@ -200,26 +216,26 @@ impl Snapshot {
         self.doubt(body).map_or_else(|| self.horizon(), |doubt| doubt.known_to)
     }
 
-    /// A body at a moment; `commanded` is what commands do at the frame after it.
-    fn sample_at(&self, id: BodyId, moment: Moment, commanded: Option<&FrameEffects>) -> Option<Sample> {
-        let known_to = self.known_to(id);
-        let Moment { frame, part } = moment;
-        let arrives = self.doubt(id).is_some_and(|doubt| doubt.arrives);
+    fn sample_at(&self, id: BodyId, look: &Look) -> Option<Sample> {
+        let Moment { frame, part } = look.moment;
+        let doubt = self.doubt(id);
+        let known_to = doubt.map_or_else(|| self.horizon(), |doubt| doubt.known_to);
+        let arrives = doubt.is_some_and(|doubt| doubt.arrives);
         if frame > known_to || (frame == known_to && part > 0.0 && !arrives) {
-            return self.sample_late(id, moment, known_to);
+            return self.sample_late(id, look.moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
-        let state = self.state(id, frame)?;
-        // Where the step leads, before the commands: nothing that is shown before their frame depends on those.
-        let arrived = commanded.and_then(|effects| effects.get(&id)?.arrived.as_ref());
-        let shown = match arrived.or_else(|| self.state(id, frame.next())) {
-            Some(next) if part > 0.0 => {
-                sample::between((state, next), part, body, &self.definitions.environment(frame))
-            }
-            _ => *state,
-        };
+        let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
-        Some(sample_of(body, &shown, if beyond { Certainty::Presumed } else { Certainty::Exact }))
+        let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
+        let next = look.arrival(id).filter(|_| part > 0.0);
+        Some(match next {
+            Some(next) if !stays(state, next) => {
+                let shown = sample::between((state, next), part, body, &look.environment);
+                sample_of(body, &shown, certainty)
+            }
+            _ => sample_of(body, state, certainty),
+        })
     }
 
     /// A body after the last frame at which it is known.
@@ -234,6 +250,29 @@ impl Snapshot {
         let certainty = if late <= EXTRAPOLATED_FRAMES { Certainty::Extrapolated } else { Certainty::Held };
         Some(sample_of(body, &shown, certainty))
     }
+}
+
+/// A time, and what is stored around it.
+struct Look<'a> {
+    moment: Moment,
+    here: Option<&'a Arc<FrameTable>>,
+    next: Option<&'a Arc<FrameTable>>,
+    /// What commands do at the next frame.
+    commanded: Option<&'a FrameEffects>,
+    environment: Environment,
+}
+
+impl<'a> Look<'a> {
+    /// Where the step leads a body, before the commands of the next frame: nothing that is shown before that frame depends on those.
+    fn arrival(&self, body: BodyId) -> Option<&'a BodyState> {
+        let commanded = self.commanded.and_then(|effects| effects.get(&body)?.arrived.as_ref());
+        commanded.or_else(|| self.next?.get(body))
+    }
+}
+
+/// Whether a body is the same at both frames, however long it has been at rest. Mostly they are the same memory.
+fn stays(state: &BodyState, next: &BodyState) -> bool {
+    std::ptr::eq(state, next) || BodyState { rest: state.rest, ..*next }.same_bits(state)
 }
 
 /// A time, as a frame and a part of the next (0 to 1).

@@ -35,6 +35,9 @@ fn main() -> Outcome<()> {
     let clock = Clock::system();
     let seconds = |from: std::time::Duration| (clock.now() - from).as_secs_f64();
 
+    // From beside the scene, over the ground.
+    let middle = scene.bodies()?.iter().map(|def| def.pose.position.z).fold(0.0, f32::max);
+    let from = Vec3::new(0.0, 2.0, middle + 16.0);
     let settings = TimelineSettings { lookahead: FLIGHT, past: 1, ..TimelineSettings::default() };
     let mut timeline = timeline_of(&scene, settings)?;
     timeline.set_display(SETTLED);
@@ -46,7 +49,7 @@ fn main() -> Outcome<()> {
     let mut throws = Vec::new();
     for index in 0..count {
         let direction = direction(index, count);
-        let fork = thrown(&timeline, direction)?;
+        let fork = thrown(&timeline, &ball(from, direction))?;
         throws.push(Throw { direction, score: score(&timeline, &fork), fork });
     }
     let forks_s = seconds(began);
@@ -54,7 +57,7 @@ fn main() -> Outcome<()> {
         throws.iter().max_by(|a, b| a.score.total_cmp(&b.score)).ok_or("no directions: ask for 1 or more")?;
     let Vec3 { x, y, z } = best.direction;
     println!("best direction ({x:.3}, {y:.3}, {z:.3}): boxes moved {:.1} m in all", best.score);
-    std::fs::write("throw.svg", picture(&timeline, &throws, best))?;
+    std::fs::write("throw.svg", picture(&timeline, &throws, best, from))?;
     println!("all paths and where the best throw leaves the boxes: throw.svg");
 
     let mut settled = world_of(&scene)?;
@@ -62,7 +65,7 @@ fn main() -> Outcome<()> {
     let began = clock.now();
     let mut alike = 0;
     for throw in &throws {
-        let copy = copied(&settled, throw.direction)?;
+        let copy = copied(&settled, &ball(from, throw.direction))?;
         alike += u32::from(ends_as(&throw.fork, &copy));
     }
     let copies_s = seconds(began);
@@ -95,26 +98,26 @@ fn direction(index: u32, count: u32) -> Vec3 {
     Vec3::new(1.2 * across, 0.12 + 0.35 * up, -1.0).normalize()
 }
 
-fn ball(direction: Vec3) -> BodyDef {
-    let mut ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.8 })).at(Vec3::new(0.0, 2.0, 36.0));
+fn ball(from: Vec3, direction: Vec3) -> BodyDef {
+    let mut ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.8 })).at(from);
     ball.velocity = direction * SPEED_M_PER_S;
     ball
 }
 
 /// A fork in which the ball is thrown, computed to its end.
-fn thrown(timeline: &Timeline, direction: Vec3) -> Outcome<Timeline> {
+fn thrown(timeline: &Timeline, ball: &BodyDef) -> Outcome<Timeline> {
     let mut fork = timeline.fork();
     let body = fork.reserve_body();
-    fork.change(SETTLED.next(), Change::Add { body, def: Box::new(ball(direction)) })?;
+    fork.change(SETTLED.next(), Change::Add { body, def: Box::new(ball.clone()) })?;
     finish(&mut fork);
     Ok(fork)
 }
 
 /// A copy of the whole world in which the ball is thrown, stepped to the end.
-fn copied(settled: &World, direction: Vec3) -> Outcome<World> {
+fn copied(settled: &World, ball: &BodyDef) -> Outcome<World> {
     let mut world = settled.clone();
     step(&mut world, 1);
-    world.add(&ball(direction))?;
+    world.add(ball)?;
     step(&mut world, FLIGHT - 1);
     Ok(world)
 }
@@ -147,8 +150,15 @@ fn ends_as(fork: &Timeline, world: &World) -> bool {
 }
 
 /// Seen from above, one metre is ten units: boxes before (grey) and after the best throw (red where they moved), all paths of the ball.
-fn picture(timeline: &Timeline, throws: &[Throw], best: &Throw) -> String {
-    let mut svg = String::from("<svg xmlns='http://www.w3.org/2000/svg' viewBox='-350 -350 700 750'>\n");
+fn picture(timeline: &Timeline, throws: &[Throw], best: &Throw, from: Vec3) -> String {
+    let side = 10.0 * (from.z + 5.0);
+    let mut svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.0} {:.0} {:.0} {:.0}'>\n",
+        -side,
+        -side,
+        2.0 * side,
+        2.0 * side
+    );
     let mut square = |state: &BodyState, fill: &str| {
         let Vec3 { x, z, .. } = state.position * 10.0;
         let _ = writeln!(

@@ -270,4 +270,5 @@ impl Drop for Decoupled {
 mod order_tests;
 mod orders;
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "times are kept to the bit where nothing is late")]
 mod tests;

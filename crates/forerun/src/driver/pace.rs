@@ -143,6 +143,7 @@ impl Pace {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "times are kept to the bit where nothing is late")]
 mod tests {
     use super::*;
 
