@@ -5,4 +5,5 @@ pub(crate) mod check;
 pub(crate) mod experiment;
 pub(crate) mod run;
 pub(crate) mod scenes;
+pub(crate) mod soak;
 pub(crate) mod validate;

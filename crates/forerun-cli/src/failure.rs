@@ -71,4 +71,10 @@ macro_rules! input_failure {
     };
 }
 
-input_failure!(forerun::PlaybackError, forerun::SceneError, forerun::StagingError, forerun::ThreadsError);
+input_failure!(
+    forerun::DriverError,
+    forerun::PlaybackError,
+    forerun::SceneError,
+    forerun::StagingError,
+    forerun::ThreadsError
+);
