@@ -188,6 +188,9 @@ pub(crate) struct SoakArgs {
     /// Random edits per second
     #[arg(long, default_value = "2", value_parser = rate, allow_negative_numbers = true)]
     pub(crate) edits_per_second: f64,
+    /// Drag a body all the time, with a command at every picture
+    #[arg(long)]
+    pub(crate) drag: bool,
     /// Longest stall of the physics in seconds, 0 for none
     #[arg(long, default_value = "2", value_parser = rate, allow_negative_numbers = true)]
     pub(crate) stall: f64,

@@ -21,6 +21,8 @@ pub(crate) struct SoakSettings {
     /// Pictures per second.
     pub(crate) fps: f64,
     pub(crate) edits_per_second: f64,
+    /// Whether a body is dragged all the time, by a command at every picture.
+    pub(crate) drag: bool,
     /// Longest stall of the physics. Seconds; 0 for none.
     pub(crate) stall_s: f64,
     /// From one stall to the next, in the mean. Seconds.

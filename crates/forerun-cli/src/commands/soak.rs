@@ -32,6 +32,9 @@ struct Verdict {
     commands: u64,
     stalls: u64,
     stalled_s: f64,
+    /// Frames that physics worked on: new ones, and again for edits.
+    frames_ahead: u64,
+    frames_again: u64,
     /// Late are intervals over 2/fps.
     intervals: Lateness,
     /// Late pictures that neither a want of processors nor the sleeper beside it explains.
@@ -56,6 +59,7 @@ pub(crate) fn run(args: &SoakArgs) -> Result<(), Failure> {
         seconds: args.seconds,
         fps: args.fps,
         edits_per_second: args.edits_per_second,
+        drag: args.drag,
         stall_s: args.stall,
         stall_every_s: args.stall_every,
         slow_s: 0.001 * args.slow_ms,
@@ -122,6 +126,8 @@ fn verdict(args: &SoakArgs, soaked: &Soaked) -> Verdict {
         commands: soaked.commands,
         stalls: soaked.stalls,
         stalled_s: soaked.stalled_s,
+        frames_ahead: soaked.frames_ahead,
+        frames_again: soaked.frames_again,
         intervals: soaked.pictures,
         late_ours: soaked.late_ours,
         sleeper: soaked.sleeper,
@@ -178,6 +184,16 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
         "behind real time, at most, at last",
         format!("{:.2} s, {:.2} s", seen.delay_max_s, seen.delay_end_s),
     )?;
+    line("frames computed, again", format!("{}, {}", verdict.frames_ahead, verdict.frames_again))?;
+    line("fewest frames ahead", seen.ahead_min.to_string())?;
+    line(
+        "pushes seen, within 2 pictures, at most",
+        format!("{}, {}, {} pictures", seen.pushes_seen, seen.pushes_in_two, seen.push_pictures_max),
+    )?;
+    if verdict.orders.dragged > 0 {
+        let late = format!("{} of {}", seen.dragged_late, verdict.orders.dragged);
+        line("pictures with the dragged body late", late)?;
+    }
     line("bodies shown late, blended", format!("{}, {}", seen.late_bodies, seen.blended_bodies))?;
     line("drawn off the truth, at most", format!("{:.3} m", seen.off_max_m))?;
     let mib = |value: Option<f64>| value.map_or_else(|| "unknown".to_owned(), |mib| format!("{mib:.2}"));

@@ -33,6 +33,8 @@ pub(crate) struct Edits {
     pub(crate) replaced: u64,
     pub(crate) undone: u64,
     pub(crate) redone: u64,
+    /// Commands of a drag.
+    pub(crate) dragged: u64,
     /// Orders that found the queue full.
     pub(crate) queue_full: u64,
 }
@@ -46,10 +48,20 @@ pub(super) struct Editor {
     held: VecDeque<BodyId>,
     recent: VecDeque<CommandKey>,
     sent: u64,
+    /// Who is dragged, and from where.
+    dragged: Option<(BodyId, Vec3)>,
 }
 
 /// What the editor did, where a witness has to know.
-pub(super) type Moved = Option<(BodyId, Frame)>;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Done {
+    /// Nothing that needs to be known.
+    Something,
+    /// A body is elsewhere from a frame on.
+    Moved(BodyId, Frame),
+    /// The local user gave a body another velocity.
+    Pushed(BodyId),
+}
 
 impl Editor {
     pub(super) fn new(seed: u64) -> Editor {
@@ -60,6 +72,7 @@ impl Editor {
             held: VecDeque::new(),
             recent: VecDeque::new(),
             sent: 0,
+            dragged: None,
         }
     }
 
@@ -75,14 +88,37 @@ impl Editor {
         driver: &mut Decoupled,
         picture: &Picture,
         samples: &[(BodyId, Sample)],
-    ) -> Result<Moved, DriverError> {
+    ) -> Result<Done, DriverError> {
         match self.order(driver, picture, samples) {
             Err(DriverError::QueueFull) => {
                 self.edits.queue_full += 1;
-                Ok(None)
+                Ok(Done::Something)
             }
             done => done,
         }
+    }
+
+    /// One more command of a drag that goes round in circles; the body that is dragged.
+    pub(super) fn drag(
+        &mut self,
+        driver: &mut Decoupled,
+        picture: &Picture,
+        samples: &[(BodyId, Sample)],
+    ) -> Result<Option<BodyId>, DriverError> {
+        if self.dragged.is_none() {
+            let picked = self.pick(picture, samples);
+            self.dragged = picked.map(|(body, sample)| (body, sample.pose.position));
+        }
+        let Some((body, centre)) = self.dragged else { return Ok(None) };
+        let (sine, cosine) = (2.0 * picture.real_s).sin_cos();
+        let target = centre + Vec3::new(sine as f32, 1.5, cosine as f32);
+        let spring = Spring { anchor: Vec3::ZERO, target, frequency_hz: 4.0, damping_ratio: 1.0 };
+        match driver.change(Change::Hold { body, spring }) {
+            Ok(_) => self.edits.dragged += 1,
+            Err(DriverError::QueueFull) => self.edits.queue_full += 1,
+            Err(error) => return Err(error),
+        }
+        Ok(Some(body))
     }
 
     fn order(
@@ -90,27 +126,27 @@ impl Editor {
         driver: &mut Decoupled,
         picture: &Picture,
         samples: &[(BodyId, Sample)],
-    ) -> Result<Moved, DriverError> {
+    ) -> Result<Done, DriverError> {
         let roll = self.random.below(100);
         let remembered = self.random.below(self.recent.len() as u64) as usize;
         let recent = self.recent.get(remembered).copied();
         match (roll, recent) {
             (0..6, Some(_)) => {
                 self.edits.undone += 1;
-                driver.undo().map(|()| None)
+                driver.undo().map(|()| Done::Something)
             }
             (6..10, Some(_)) => {
                 self.edits.redone += 1;
-                driver.redo().map(|()| None)
+                driver.redo().map(|()| Done::Something)
             }
             (10..18, Some(key)) => {
                 self.edits.retracted += 1;
-                driver.retract(key).map(|()| None)
+                driver.retract(key).map(|()| Done::Something)
             }
             (18..22, Some(key)) => {
-                let Some(change) = self.pushed(picture, samples) else { return Ok(None) };
+                let Some(change) = self.pushed(picture, samples) else { return Ok(Done::Something) };
                 self.edits.replaced += 1;
-                driver.replace(key, change).map(|()| None)
+                driver.replace(key, change).map(|()| Done::Something)
             }
             _ => self.command(driver, picture, samples),
         }
@@ -122,9 +158,10 @@ impl Editor {
         driver: &mut Decoupled,
         picture: &Picture,
         samples: &[(BodyId, Sample)],
-    ) -> Result<Moved, DriverError> {
-        let Some(change) = self.change(driver, picture, samples) else { return Ok(None) };
+    ) -> Result<Done, DriverError> {
+        let Some(change) = self.change(driver, picture, samples) else { return Ok(Done::Something) };
         let moved = if let Change::Move { body, .. } = &change { Some(*body) } else { None };
+        let pushed = if let Change::Push { body, .. } = &change { Some(*body) } else { None };
         let displayed = picture.frame;
         let frame = match self.random.below(10) {
             0..6 => None,
@@ -151,7 +188,11 @@ impl Editor {
         if self.recent.len() > REMEMBERED {
             self.recent.pop_front();
         }
-        Ok(moved.map(|body| (body, key.frame)))
+        Ok(match (moved, pushed) {
+            (Some(body), _) => Done::Moved(body, key.frame),
+            (_, Some(body)) if frame.is_none() => Done::Pushed(body),
+            _ => Done::Something,
+        })
     }
 
     fn change(

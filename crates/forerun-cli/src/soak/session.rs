@@ -12,7 +12,7 @@ use forerun::{
 };
 
 use super::SoakSettings;
-use super::editor::{Editor, Edits};
+use super::editor::{Done, Editor, Edits};
 use super::machine::{Hogs, Lateness, Sleeper, resident_mib, starved_s};
 use super::oracle::{Log, compare};
 use super::witness::{Seen, Witness};
@@ -35,6 +35,9 @@ pub(crate) struct Soaked {
     pub(crate) bodies: u64,
     pub(crate) stalls: u64,
     pub(crate) stalled_s: f64,
+    /// Frames that physics worked on: new ones, and again.
+    pub(crate) frames_ahead: u64,
+    pub(crate) frames_again: u64,
     /// From one picture to the next.
     pub(crate) pictures: Lateness,
     /// The thread beside it that only slept.
@@ -188,10 +191,15 @@ impl Session<'_> {
             });
             self.witness.look(&picture, &samples, (blending, self.driver.offsets()));
             if self.editor.falls(self.settings.edits_per_second, interval.as_secs_f64()) {
-                let moved = self.editor.edit(&mut self.driver, &picture, &samples)?;
-                if let Some((body, frame)) = moved {
-                    self.witness.expect_move(body, frame);
+                match self.editor.edit(&mut self.driver, &picture, &samples)? {
+                    Done::Something => {}
+                    Done::Moved(body, frame) => self.witness.expect_move(body, frame),
+                    Done::Pushed(body) => self.witness.expect_push(body, &picture),
                 }
+            }
+            if self.settings.drag {
+                let dragged = self.editor.drag(&mut self.driver, &picture, &samples)?;
+                self.witness.look_at_dragged(dragged, &samples);
             }
             self.keep_log(picture.frame.0)?;
             let shown_s = (began - start).as_secs_f64();
@@ -232,6 +240,9 @@ impl Session<'_> {
         loop {
             if let Some(mut fork) = self.driver.take_fork() {
                 self.log.learn(fork.timeline());
+                let stats = fork.timeline().stats();
+                (self.soaked.frames_ahead, self.soaked.frames_again) =
+                    (stats.ahead.frames, stats.edits.frames);
                 while fork.timeline_mut().advance() != Progress::Idle {}
                 return Ok(fork);
             }
@@ -275,6 +286,7 @@ mod tests {
             seconds: 8.0,
             fps: 60.0,
             edits_per_second: 6.0,
+            drag: false,
             stall_s: 2.0,
             stall_every_s: 2.0,
             slow_s: 0.0,
@@ -312,6 +324,17 @@ mod tests {
             assert!(soaked.frames_compared > 100 && soaked.commands > 10, "{soaked:?}");
             assert_eq!((soaked.mismatches, soaked.first_mismatch), (0, None));
         }
+    }
+
+    #[test]
+    fn a_body_that_is_dragged_keeps_the_display_fed() {
+        let settings =
+            SoakSettings { drag: true, stall_s: 0.0, prefill: 60, edits_per_second: 0.5, ..settings() };
+        let soaked = soaked("islands:4", &settings);
+        let seen = &soaked.seen;
+        assert!(soaked.edits.dragged > 470, "{soaked:?}");
+        assert_eq!((seen.backward_steps, seen.forward_jumps, seen.teleports), (0, 0, 0), "{seen:?}");
+        assert_eq!((soaked.mismatches, soaked.first_mismatch), (0, None));
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Witness: looks at every picture as a viewer would. Did time go back, did a body jump?
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use forerun::timeline::{Certainty, Sample};
-use forerun::{Blending, BodyId, Frame, Offset, Picture};
+use forerun::{Blending, BodyId, Frame, Offset, Picture, Snapshot};
 use serde::Serialize;
 
 /// A body goes by more than so many times what its velocity and the blend explain: a jump.
@@ -36,6 +37,16 @@ pub(crate) struct Seen {
     pub(crate) delay_end_s: f64,
     /// Bodies in pictures that were shown as they went on before, or held, because physics was late with them.
     pub(crate) late_bodies: u64,
+    /// Pictures in which the dragged body was shown late.
+    pub(crate) dragged_late: u64,
+    /// Fewest frames that were ahead of a picture, the first second left out.
+    pub(crate) ahead_min: u64,
+    /// Pushes by the local user that were followed until they were seen.
+    pub(crate) pushes_seen: u64,
+    /// Those of them that were seen in the second picture after the one they were given in, or before.
+    pub(crate) pushes_in_two: u64,
+    /// Pictures from a push to the first that shows it, at most.
+    pub(crate) push_pictures_max: u64,
     /// Bodies in pictures that were drawn off the truth, to lead them back.
     pub(crate) blended_bodies: u64,
     /// Farthest that a body was drawn off the truth. Metres.
@@ -55,11 +66,21 @@ pub(super) struct Witness {
     slow_since_s: Option<f64>,
     /// Bodies that commands put elsewhere, and at which frames.
     moves: BTreeSet<(BodyId, Frame)>,
+    /// A push that has not been seen yet.
+    push: Option<Push>,
+}
+
+/// A push, what was known before it, and pictures since.
+#[derive(Debug)]
+struct Push {
+    body: BodyId,
+    before: Arc<Snapshot>,
+    pictures: u64,
 }
 
 impl Witness {
     pub(super) fn new() -> Witness {
-        let seen = Seen { rate_min: 1.0, ..Seen::default() };
+        let seen = Seen { rate_min: 1.0, ahead_min: u64::MAX, ..Seen::default() };
         Witness {
             seen,
             samples: Vec::new(),
@@ -68,12 +89,43 @@ impl Witness {
             frame: Frame(0),
             slow_since_s: None,
             moves: BTreeSet::new(),
+            push: None,
         }
     }
 
     /// A command puts a body elsewhere at a frame: that is no jump of the display.
     pub(super) fn expect_move(&mut self, body: BodyId, frame: Frame) {
         self.moves.insert((body, frame));
+    }
+
+    /// The local user pushed a body: when is it seen? One push at a time is followed.
+    pub(super) fn expect_push(&mut self, body: BodyId, picture: &Picture) {
+        let before = Arc::clone(&picture.snapshot);
+        self.push.get_or_insert(Push { body, before, pictures: 0 });
+    }
+
+    pub(super) fn look_at_dragged(&mut self, dragged: Option<BodyId>, samples: &[(BodyId, Sample)]) {
+        let sample = samples.iter().find(|(body, _)| Some(*body) == dragged);
+        self.seen.dragged_late +=
+            u64::from(sample.is_some_and(|(_, sample)| sample.certainty > Certainty::Presumed));
+    }
+
+    /// A push is seen when the body is elsewhere than it would have been.
+    fn look_for_push(&mut self, picture: &Picture) {
+        let Some(push) = &mut self.push else { return };
+        push.pictures += 1;
+        let now = picture.snapshot.sample(push.body, picture.time_s);
+        let then = push.before.sample(push.body, picture.time_s);
+        let Some((now, then)) = now.zip(then) else {
+            self.push = None;
+            return;
+        };
+        if now.certainty <= Certainty::Presumed && now.pose != then.pose {
+            self.seen.pushes_seen += 1;
+            self.seen.pushes_in_two += u64::from(push.pictures <= 2);
+            self.seen.push_pictures_max = self.seen.push_pictures_max.max(push.pictures);
+            self.push = None;
+        }
     }
 
     pub(super) fn look(
@@ -91,6 +143,11 @@ impl Witness {
             self.look_at_bodies((picture, advance_s, passed_s), samples, offsets);
         }
         self.look_at_clock(picture);
+        self.look_for_push(picture);
+        if picture.time_s > 1.0 {
+            let ahead = picture.snapshot.horizon().since(picture.frame);
+            self.seen.ahead_min = self.seen.ahead_min.min(ahead);
+        }
         self.seen.late_bodies +=
             samples.iter().filter(|(_, sample)| sample.certainty > Certainty::Presumed).count() as u64;
         self.seen.blended_bodies += u64::from(blending.bodies);

@@ -230,6 +230,7 @@ impl Decoupled {
             oldest_s: snapshot.oldest().seconds(frame_seconds),
             horizon_s: snapshot.horizon().seconds(frame_seconds),
             lookahead_s: self.lookahead_s,
+            frame_s: self.frame_seconds,
             full: self.shared.is_physics_done(),
         }
     }
