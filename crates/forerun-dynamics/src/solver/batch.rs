@@ -13,6 +13,7 @@ use super::load::{Load, LoadPass, Strain};
 use super::positions::{Ending, IslandsAt, REST_TOUCH_M, moved, settle};
 use super::prepare::{Source, prepare};
 use super::shock::{propagate_classic, propagate_shock};
+use super::standing::StandingPass;
 use super::sweep::{relax, sweep};
 use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
@@ -145,6 +146,14 @@ impl<'a> Batch<'a> {
         kicks.push(Row::default());
         let mut before = Vec::new();
         let (blocks, bodies) = (&mut self.blocks, &mut self.bodies);
+        let standing = StandingPass {
+            guard: &guard,
+            kicks: &kicks,
+            displacements: &bodies.displacements,
+            substep_seconds: h,
+            sweeps: settings.first_sweeps_hard,
+        };
+        standing.run(&mut blocks[self.easy_blocks..]);
         for substep in 0..settings.substeps {
             if self.bounces {
                 resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings));
@@ -161,13 +170,8 @@ impl<'a> Batch<'a> {
             apply_impulses(blocks, &mut bodies.velocities);
             let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
             guard.check(blocks, &before, &mut bodies.velocities, guess);
-            let (easy, hard) = blocks.split_at_mut(self.easy_blocks);
-            let (first, first_hard) = (settings.first_sweeps, settings.first_sweeps_hard);
-            for _ in 0..if substep == 0 { first } else { 1 } {
-                sweep(easy, &mut bodies.velocities, &bodies.displacements, h);
-            }
-            for _ in 0..if substep == 0 { first_hard } else { 1 } {
-                sweep(hard, &mut bodies.velocities, &bodies.displacements, h);
+            for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
+                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
             }
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);

@@ -18,6 +18,7 @@ mod pressure;
 mod rotation;
 mod shock;
 mod spring;
+mod standing;
 mod sweep;
 mod velocities;
 mod warm_start;
