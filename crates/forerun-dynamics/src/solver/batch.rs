@@ -10,8 +10,9 @@ use super::collisions::{Moving, resolve_collisions};
 use super::contact_graph::ContactGraph;
 use super::islands::Islands;
 use super::load::{Load, LoadPass, Strain};
-use super::positions::{Ending, IslandsAt, REST_TOUCH_M, moved, settle};
+use super::positions::moved;
 use super::prepare::{Source, prepare};
+use super::rest::{Ending, IslandsAt, REST_TOUCH_M, settle};
 use super::shock::{propagate_classic, propagate_shock};
 use super::standing::StandingPass;
 use super::sweep::{relax, sweep};
@@ -221,7 +222,7 @@ impl<'a> Batch<'a> {
         let mut next: Vec<BodyState> = (self.members.iter().enumerate())
             .map(|(i, m)| moved(m, &self.bodies, i, &endings[i], &self.environment))
             .collect();
-        let islands = IslandsAt { islands: &self.islands, driven: &self.driven() };
+        let islands = IslandsAt { islands: &self.islands, driven: &self.driven(), contacts: &self.contacts };
         settle(&self.members, &mut next, &endings, &islands, &self.environment);
         next
     }

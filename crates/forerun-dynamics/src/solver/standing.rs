@@ -27,7 +27,7 @@ pub(crate) struct StandingPass<'a> {
 }
 
 /// Velocities and impulses that belong together.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 struct Solution {
     velocities: Vec<Row>,
     impulses: Vec<Impulses<Portable>>,
@@ -45,7 +45,7 @@ impl StandingPass<'_> {
         apply_impulses(blocks, &mut velocities);
         self.guard.check(blocks, self.kicks, &mut velocities, Guarded::Guess);
         let mut last = Solution::of(blocks, &velocities);
-        let mut way = Solution::default();
+        let mut way = last.clone();
         for k in 0..self.sweeps {
             sweep(blocks, &mut velocities, self.displacements, self.substep_seconds);
             if k + 1 == self.sweeps {
@@ -55,9 +55,7 @@ impl StandingPass<'_> {
                 let lengths = self.lengths(&velocities, &last, &way);
                 self.go_on(&lengths, &way, &mut velocities, blocks);
             }
-            let here = Solution::of(blocks, &velocities);
-            way = here.minus(&last);
-            last = here;
+            way.lead(&mut last, &velocities, blocks);
         }
         add_momentum(blocks);
     }
@@ -86,13 +84,7 @@ impl StandingPass<'_> {
         (0..n).map(length).collect()
     }
 
-    fn go_on(
-        &self,
-        lengths: &[f32],
-        way: &Solution,
-        velocities: &mut [Row],
-        blocks: &mut [Block<Portable>],
-    ) {
+    fn go_on(&self, lengths: &[f32], way: &Solution, velocities: &mut [Row], blocks: &mut [Block<Portable>]) {
         for i in (0..self.guard.dynamic.len()).filter(|&i| self.guard.dynamic[i]) {
             let length = lengths[self.guard.islands.root(i)];
             for k in 0..6 {
@@ -114,26 +106,31 @@ impl StandingPass<'_> {
 
 impl Solution {
     fn of(blocks: &[Block<Portable>], velocities: &[Row]) -> Solution {
-        let impulses = blocks.iter().map(|b| Impulses {
-            points: std::array::from_fn(|q| b.points[q].impulse),
-            tangents: b.friction.impulses,
-            twist: b.friction.twist_impulse,
-        });
-        Solution { velocities: velocities.to_vec(), impulses: impulses.collect() }
+        Solution { velocities: velocities.to_vec(), impulses: blocks.iter().map(impulses_of).collect() }
     }
 
-    fn minus(&self, other: &Solution) -> Solution {
-        let rows = self.velocities.iter().zip(&other.velocities);
-        let impulses = self.impulses.iter().zip(&other.impulses);
-        Solution {
-            velocities: rows.map(|(a, b)| Row(std::array::from_fn(|k| a.0[k] - b.0[k]))).collect(),
-            impulses: impulses
-                .map(|(a, b)| Impulses {
-                    points: std::array::from_fn(|q| a.points[q] - b.points[q]),
-                    tangents: std::array::from_fn(|i| a.tangents[i] - b.tangents[i]),
-                    twist: a.twist - b.twist,
-                })
-                .collect(),
+    /// Makes this the way from `last` to where the solution is now, which becomes the last.
+    fn lead(&mut self, last: &mut Solution, velocities: &[Row], blocks: &[Block<Portable>]) {
+        for ((way, last), here) in self.velocities.iter_mut().zip(&mut last.velocities).zip(velocities) {
+            *way = Row(std::array::from_fn(|k| here.0[k] - last.0[k]));
+            *last = *here;
         }
+        for ((way, last), block) in self.impulses.iter_mut().zip(&mut last.impulses).zip(blocks) {
+            let here = impulses_of(block);
+            *way = Impulses {
+                points: std::array::from_fn(|q| here.points[q] - last.points[q]),
+                tangents: std::array::from_fn(|i| here.tangents[i] - last.tangents[i]),
+                twist: here.twist - last.twist,
+            };
+            *last = here;
+        }
+    }
+}
+
+fn impulses_of(block: &Block<Portable>) -> Impulses<Portable> {
+    Impulses {
+        points: std::array::from_fn(|q| block.points[q].impulse),
+        tangents: block.friction.impulses,
+        twist: block.friction.twist_impulse,
     }
 }
