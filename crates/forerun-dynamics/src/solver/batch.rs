@@ -12,7 +12,7 @@ use super::islands::Islands;
 use super::load::{Load, LoadPass, Strain};
 use super::positions::moved;
 use super::prepare::{Source, prepare};
-use super::rest::{Ending, IslandsAt, REST_TOUCH_M, settle};
+use super::rest::{IslandsAt, endings, settle};
 use super::shock::{propagate_classic, propagate_shock};
 use super::standing::StandingPass;
 use super::sweep::{relax, sweep};
@@ -218,26 +218,13 @@ impl<'a> Batch<'a> {
 
     /// Stage 6: new states, in the order of the members.
     pub(crate) fn integrate_positions(&self) -> Vec<BodyState> {
-        let endings = self.endings();
+        let endings = endings(&self.members, &self.contacts, &self.spins, &self.environment.settings);
         let mut next: Vec<BodyState> = (self.members.iter().enumerate())
             .map(|(i, m)| moved(m, &self.bodies, i, &endings[i], &self.environment))
             .collect();
         let islands = IslandsAt { islands: &self.islands, driven: &self.driven(), contacts: &self.contacts };
         settle(&self.members, &mut next, &endings, &islands, &self.environment);
         next
-    }
-
-    fn endings(&self) -> Vec<Ending> {
-        let mut endings: Vec<Ending> =
-            self.spins.iter().map(|&spin| Ending { spin, ..Ending::default() }).collect();
-        for c in &self.contacts {
-            let deepest = deepest(c);
-            for i in [c.first as usize, c.second as usize] {
-                endings[i].overlap = endings[i].overlap.max(deepest);
-                endings[i].touches |= c.manifold.deepest() < REST_TOUCH_M;
-            }
-        }
-        endings
     }
 
     /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
@@ -255,12 +242,6 @@ impl<'a> Batch<'a> {
 /// Whether contacts with the shape come from a distance field.
 pub(crate) fn is_mesh(shape: &Shape) -> bool {
     matches!(shape, Shape::Mesh(_))
-}
-
-/// Deepest overlap of a contact; 0 when it is apart. Metres.
-fn deepest(contact: &Contact) -> f32 {
-    let m = &contact.manifold;
-    m.points[..m.count as usize].iter().fold(0.0, |deepest, p| deepest.max(-p.separation))
 }
 
 /// What the kernels that look ahead need of the bodies.

@@ -9,7 +9,7 @@ use forerun_geometry::{Quat, Vec3};
 
 use super::islands::Islands;
 use crate::narrow_phase::Contact;
-use crate::{BodyState, Environment, Member};
+use crate::{BodyState, Environment, Member, StepSettings};
 
 /// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
 const SHALLOW_REST: u32 = 4;
@@ -17,7 +17,7 @@ const SHALLOW_REST: u32 = 4;
 /// A body that overlaps deeper than this part of its half thickness does not come to rest, however little that is.
 const REST_PART: f32 = 0.1;
 /// A body that is farther than this from all others has nothing to rest on. Metres.
-pub(crate) const REST_TOUCH_M: f32 = 0.001;
+const REST_TOUCH_M: f32 = 0.001;
 
 /// What the end of a frame needs to know about one body besides its rows.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,6 +28,8 @@ pub(crate) struct Ending {
     pub(crate) overlap: f32,
     /// Whether it touches anybody, and is not only about to.
     pub(crate) touches: bool,
+    /// Whether it overlaps too deep to come to rest, or touches one that does: there must be room to push it out.
+    pub(crate) crammed: bool,
 }
 
 /// A body that goes on its way faster than this part of `rest_speed` is not quiet.
@@ -41,6 +43,34 @@ pub(crate) struct IslandsAt<'a> {
     /// By root: whether a moving kinematic body touches the island.
     pub(crate) driven: &'a [bool],
     pub(crate) contacts: &'a [Contact],
+}
+
+/// What contacts tell of the bodies at the end of a frame that started with these spins.
+pub(crate) fn endings(
+    members: &[Member],
+    contacts: &[Contact],
+    spins: &[Vec3],
+    settings: &StepSettings,
+) -> Vec<Ending> {
+    let mut endings: Vec<Ending> = spins.iter().map(|&spin| Ending { spin, ..Ending::default() }).collect();
+    let touching = || contacts.iter().filter(|c| c.manifold.deepest() < REST_TOUCH_M);
+    for c in touching() {
+        for i in [c.first as usize, c.second as usize] {
+            endings[i].overlap = endings[i].overlap.max(-c.manifold.deepest());
+            endings[i].touches = true;
+        }
+    }
+    let deep = |i: usize| {
+        let body = members[i].body;
+        body.is_dynamic() && endings[i].overlap > settings.rest_overlap_m.min(REST_PART * body.half_thickness)
+    };
+    let deep: Vec<bool> = (0..members.len()).map(deep).collect();
+    for c in touching() {
+        let crammed = deep[c.first as usize] || deep[c.second as usize];
+        endings[c.first as usize].crammed |= crammed;
+        endings[c.second as usize].crammed |= crammed;
+    }
+    endings
 }
 
 /// Counts the quiet frames of each body, and stops those that have come to rest.
@@ -86,7 +116,7 @@ fn counted(member: &Member, ending: &Ending, environment: &Environment) -> u32 {
     let full = settings.rest_frames();
     let counted = (member.state.rest + 1).min(full);
     let shallow = ending.overlap < 2.0 * settings.overlap_allowed_m;
-    if ending.overlap > settings.rest_overlap_m.min(REST_PART * member.body.half_thickness) {
+    if ending.crammed {
         // Pushed on, even out of rest: a body between two frozen ones could not get out.
         counted.min(full - 1)
     } else if shallow && counted >= full.div_ceil(SHALLOW_REST) {
