@@ -36,8 +36,8 @@ pub(crate) struct Ending {
 const DRIFT_PART: f32 = 0.1;
 /// The same for balls and capsules: nothing in the step brakes their rolling, and slower than this what resists it in nature stops one within seconds.
 const ROLL_PART: f32 = 0.4;
-/// A pose may change so much faster than `rest_speed`: overlap that is pushed out, and comes back, is no motion.
-const PUSHED: f32 = 2.0;
+/// A body may turn so much faster than `rest_speed` while it is pushed out of overlaps on all sides, and a ball that others hold.
+const TURNS: f32 = 2.0;
 /// What goes on its way changes its velocity by less than this part of it in a frame: uniform acceleration does after eight frames.
 const UNSTEADY: f32 = 0.125;
 
@@ -174,11 +174,11 @@ fn quiet(member: &Member, next: &BodyState, environment: &Environment) -> bool {
     let r2 = member.body.radius * member.body.radius;
     let limit2 = environment.settings.rest_speed * environment.settings.rest_speed;
     // A ball that others hold turns in its place, and that moves nothing.
-    let spin2 = if matches!(member.body.shape, Shape::Sphere(_)) { PUSHED * PUSHED * limit2 } else { limit2 };
+    let spin2 = if matches!(member.body.shape, Shape::Sphere(_)) { TURNS * TURNS * limit2 } else { limit2 };
     next.velocity.length_squared() < limit2
         && next.angular_velocity.length_squared() * r2 < spin2
-        && shift.length_squared() < PUSHED * PUSHED * limit2
-        && turn.length_squared() * r2 < PUSHED * PUSHED * limit2
+        && shift.length_squared() < limit2
+        && turn.length_squared() * r2 < TURNS * TURNS * limit2
         && !drifts(member, next, environment, UNSTEADY)
 }
 
