@@ -426,3 +426,50 @@ fn a_body_that_is_taken_away_ends_its_touches() {
     // The step that leads to the frame of a command is done before it.
     assert_eq!(found, [(11, ContactKind::End, 0), (13, ContactKind::End, 1), (15, ContactKind::End, 1)]);
 }
+
+/// What recording costs: `cargo test --release -p forerun-timeline --test contacts cost -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+#[allow(
+    clippy::disallowed_types,
+    clippy::print_stdout,
+    reason = "a measurement has a clock and is read by people"
+)]
+fn cost_of_recording() {
+    let cube = Shape::cuboid(Vec3::splat(0.5)).unwrap();
+    let mut random = Random::new(4);
+    let mut bodies = vec![BodyDef::fixed(Shape::HalfSpace)];
+    for i in 0..1000_u32 {
+        let (column, row, level) = ((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32);
+        let place = Vec3::new(1.05 * column, 0.6 + 1.1 * level, 1.05 * row) + random.vector() * 0.3;
+        bodies.push(BodyDef::new(cube.clone()).at(place));
+    }
+    for record_contacts in [false, true, false, true] {
+        let settings = TimelineSettings { lookahead: 120, record_contacts, ..TimelineSettings::default() };
+        let mut timeline = Timeline::new(&bodies, Environment::default(), settings).unwrap();
+        let start = std::time::Instant::now();
+        run(&mut timeline);
+        let frame_ms = start.elapsed().as_secs_f64() * 1e3 / 120.0;
+        let snapshot = timeline.snapshot();
+        let touches: usize = (1..=120).map(|frame| snapshot.contacts(Frame(frame)).len()).sum();
+        let body_frames = 1000.0 * 121.0;
+        println!(
+            "recording {record_contacts}: {frame_ms:.2} ms a frame, {:.1} bytes a body and frame, {:.2} touches a body and frame",
+            timeline.state_bytes() as f64 / body_frames,
+            touches as f64 / body_frames,
+        );
+        let mut listener = ContactListener::default();
+        let (mut told, mut slowest) = (0, 0.0_f64);
+        let start = std::time::Instant::now();
+        for frame in 0..=120 {
+            let begin = std::time::Instant::now();
+            told += listener.pass(&snapshot, f64::from(frame) / 60.0 + 0.001).len();
+            slowest = slowest.max(begin.elapsed().as_secs_f64() * 1e6);
+        }
+        let pass_us = start.elapsed().as_secs_f64() * 1e6 / 121.0;
+        println!("    {told} told, {pass_us:.1} µs a picture, at most {slowest:.1} µs");
+        let start = std::time::Instant::now();
+        let events = snapshot.contact_events(0.0, 2.0).len();
+        println!("    {events} events of 2 s in {:.2} ms", start.elapsed().as_secs_f64() * 1e3);
+    }
+}
