@@ -56,6 +56,7 @@ mod reference;
 mod sample;
 mod shared_list;
 pub mod snapshot;
+mod snapshot_difference;
 mod stale;
 mod state_hash;
 mod stats;

@@ -329,11 +329,10 @@ fn make(part: &NameParts, environment: &Environment) -> Result<Option<Arc<Body>>
     Ok(Some(Arc::new(Body { material, force, torque, gravity_scale, spring: now.spring, ..made })))
 }
 
-/// What every stored state is: finite, turned by a unit quaternion, without -0, and not longer at rest than there is.
+/// What every stored state is: finite, without -0, and not longer at rest than there is.
 fn check_state(state: &BodyState, environment: &Environment) -> Result<(), String> {
-    let unit = (state.rotation.length_squared() - 1.0).abs() < 1e-3;
-    if !(state.is_finite() && unit && state.same_bits(&state.canonical())) {
-        return Err("is none that a body can be in".to_owned());
+    if !(state.is_finite() && state.same_bits(&state.canonical())) {
+        return Err("has a number that is not finite, or -0".to_owned());
     }
     let most = environment.settings.rest_frames() + 1;
     if state.rest > most {
