@@ -35,7 +35,8 @@ pub struct ContactEvent {
 
 impl Snapshot {
     /// Who touched whom in the step that led to a frame, sorted by pair. None where the frame is not stored, at frame 0, and where touches
-    /// are not recorded (see [`TimelineSettings::record_contacts`](crate::TimelineSettings::record_contacts)).
+    /// are not recorded (see [`TimelineSettings::record_contacts`](crate::TimelineSettings::record_contacts)). Beyond
+    /// [`valid_to`](Snapshot::valid_to) it may still come out otherwise.
     #[must_use]
     pub fn contacts(&self, frame: Frame) -> Vec<Touch> {
         let touches = self.tables.get(frame).map(|table| table.touches());

@@ -18,7 +18,8 @@ pub enum LateEdits {
     #[default]
     LetBe,
     /// Events that did not happen after all are retracted and new ones are told, as long as their frames are stored: what was told less what
-    /// was retracted is what [`Snapshot::contact_events`] lists. An event that only changed in strength or place stays as it was told.
+    /// was retracted is what [`Snapshot::contact_events`] lists. An event that only changed in strength or place stays as it was told. Keeps
+    /// the states of all frames that can still be corrected, as they were told.
     Correct,
 }
 
