@@ -30,7 +30,7 @@ fn edits_of_the_future_are_told_as_they_come_true_and_only_once() {
         let settings = TimelineSettings { past: 1000, ..SETTINGS };
         let mut timeline = Timeline::new(&bodies, environment(1), settings).unwrap();
         let mut random = Random::new(77);
-        let listen = ListenerSettings { hit_impulse_min: 20.0, ..ListenerSettings::default() };
+        let listen = ListenerSettings { hit_speed_min: 0.3, ..ListenerSettings::default() };
         let mut listener = ContactListener::new(listen);
         let mut told: Vec<ContactEvent> = Vec::new();
         let mut undone = 0;
@@ -60,9 +60,8 @@ fn edits_of_the_future_are_told_as_they_come_true_and_only_once() {
             ContactNotice::Happened(event) => event,
             ContactNotice::Retracted(event) => panic!("{event:?}"),
         }));
-        let expected: Vec<ContactEvent> = (1..=timeline.display().0)
-            .flat_map(|frame| plain_events(&snapshot, Frame(frame), 20.0))
-            .collect();
+        let expected: Vec<ContactEvent> =
+            (1..=timeline.display().0).flat_map(|frame| plain_events(&snapshot, Frame(frame), 0.3)).collect();
         assert_eq!(told, expected, "{scene}");
         let true_now: BTreeSet<Key> = expected.iter().map(key).collect();
         undone += foreseen.iter().filter(|k| k.0 <= timeline.display() && !true_now.contains(*k)).count();
@@ -121,7 +120,7 @@ fn late_edits_are_corrected_where_that_is_asked_for() {
     let mut retracted = 0;
     for (scene, bodies) in scenes::all() {
         for seed in 30..34 {
-            let listen = ListenerSettings { hit_impulse_min: 30.0, late_edits: LateEdits::Correct };
+            let listen = ListenerSettings { hit_speed_min: 0.3, late_edits: LateEdits::Correct };
             let mut listener = ContactListener::new(listen);
             let mut told: BTreeSet<Key> = BTreeSet::new();
             let settings = TimelineSettings { past: 1000, ..SETTINGS };
@@ -137,7 +136,7 @@ fn late_edits_are_corrected_where_that_is_asked_for() {
             });
             let snapshot = timeline.snapshot();
             let expected: BTreeSet<Key> = (1..=timeline.display().0)
-                .flat_map(|frame| plain_events(&snapshot, Frame(frame), 30.0))
+                .flat_map(|frame| plain_events(&snapshot, Frame(frame), 0.3))
                 .map(|event| key(&event))
                 .collect();
             assert_eq!(told, expected, "{scene}, seed {seed}");
@@ -154,7 +153,7 @@ fn whoever_begins_to_listen_late_hears_what_touches() {
     run(&mut timeline);
     let snapshot = timeline.snapshot();
     let mut listener =
-        ContactListener::new(ListenerSettings { hit_impulse_min: 0.0, ..ListenerSettings::default() });
+        ContactListener::new(ListenerSettings { hit_speed_min: 0.0, ..ListenerSettings::default() });
     let first = listener.pass(&snapshot, 0.205);
     let begins: Vec<Touch> = first
         .iter()

@@ -147,7 +147,7 @@ fn events_are_what_the_lists_say() {
             [(0, horizon), (oldest, oldest + 9), (oldest + 20, horizon), (oldest + 7, oldest + 7)]
         {
             let expected: Vec<ContactEvent> = (from.max(oldest) + 1..=to)
-                .flat_map(|frame| plain_events(&snapshot, Frame(frame), 50.0))
+                .flat_map(|frame| plain_events(&snapshot, Frame(frame), 0.3))
                 .collect();
             let (expected_hits, expected): (Vec<_>, Vec<_>) =
                 expected.into_iter().partition(|event| event.kind == ContactKind::Hit);
@@ -155,7 +155,7 @@ fn events_are_what_the_lists_say() {
             for (early, late) in [(0.0, 0.0), (0.3, 0.9)] {
                 let range = ((from as f64 + early) * dt, (to as f64 + late) * dt);
                 assert_eq!(snapshot.contact_events(range.0, range.1), expected);
-                assert_eq!(snapshot.hits(range.0, range.1, 50.0), expected_hits);
+                assert_eq!(snapshot.hits(range.0, range.1, 0.3), expected_hits);
             }
             begins += expected.iter().filter(|event| event.kind == ContactKind::Begin).count();
             ends += expected.iter().filter(|event| event.kind == ContactKind::End).count();

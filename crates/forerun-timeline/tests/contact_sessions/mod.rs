@@ -67,7 +67,7 @@ pub(crate) fn session(
 }
 
 /// Events by comparing whole lists.
-pub(crate) fn plain_events(snapshot: &Snapshot, frame: Frame, impulse_min: f32) -> Vec<ContactEvent> {
+pub(crate) fn plain_events(snapshot: &Snapshot, frame: Frame, speed_min: f32) -> Vec<ContactEvent> {
     let (before, now) = (snapshot.contacts(Frame(frame.0 - 1)), snapshot.contacts(frame));
     let find = |list: &[Touch], t: &Touch| -> Option<Touch> {
         list.iter().find(|o| (o.first, o.second) == (t.first, t.second)).copied()
@@ -78,7 +78,7 @@ pub(crate) fn plain_events(snapshot: &Snapshot, frame: Frame, impulse_min: f32) 
         if last.is_none() {
             events.push(ContactEvent { frame, kind: ContactKind::Begin, touch: *touch });
         }
-        if touch.impulse - last.map_or(0.0, |last| last.impulse) >= impulse_min {
+        if touch.speed >= speed_min && last.is_none_or(|last| last.speed < speed_min) {
             events.push(ContactEvent { frame, kind: ContactKind::Hit, touch: *touch });
         }
     }
