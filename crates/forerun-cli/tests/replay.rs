@@ -56,7 +56,11 @@ fn a_recorded_run_is_replayed_with_the_same_hashes() {
     }
     assert!(hashes[0].is_string() && hashes[0] == hashes[1] && hashes[1] == hashes[2], "{hashes:?}");
     let output = forerun(&["replay", &file]);
-    assert!(text(&output.stdout).contains("hashes that are different           0"), "{}", text(&output.stdout));
+    assert!(
+        text(&output.stdout).contains("hashes that are different           0"),
+        "{}",
+        text(&output.stdout)
+    );
 }
 
 #[test]
@@ -91,7 +95,10 @@ fn what_cannot_be_recorded_or_replayed_ends_with_2() {
     let file = path(&folder, "a.forerun");
     let nowhere = path(&folder, "no/such/folder/a.forerun");
     let cases: [(&[&str], &str); 4] = [
-        (&["run", "dominoes:3", "--driver", "coupled", "--record", &file], "record: needs the decoupled driver"),
+        (
+            &["run", "dominoes:3", "--driver", "coupled", "--record", &file],
+            "record: needs the decoupled driver",
+        ),
         (&["run", "dominoes:3", "--seconds", "1", "--record", &nowhere], "choose another file"),
         (&["replay", "Cargo.toml"], "Cargo.toml: is no recording"),
         (&["replay", "nosuch.forerun"], "nosuch.forerun: "),

@@ -106,7 +106,6 @@ impl Fuzz {
         self.sequence += 1;
         let key = CommandKey { frame, source, sequence: self.sequence };
         let before = summary(timeline);
-        let names = timeline.names();
         let is_used = is_made(&change, &self.bodies, &self.run.commands);
         match timeline.obey(Order::Submit(Command { key, change: change.clone() })) {
             Ok(()) => {
@@ -129,8 +128,8 @@ impl Fuzz {
     fn replace(&mut self, index: u8, what: &What) -> Result<(), String> {
         let Some((key, old)) = pick(&self.run.commands, index) else { return Ok(()) };
         let timeline = &mut self.run.timeline;
-        let (before, names) = (summary(timeline), timeline.names());
-        let change = what.change(names);
+        let before = summary(timeline);
+        let change = what.change(timeline.names());
         let mut others = self.run.commands.clone();
         others.remove(&key);
         let is_used = is_made(&change, &self.bodies, &others);
