@@ -6,4 +6,5 @@ pub(crate) mod experiment;
 pub(crate) mod replay;
 pub(crate) mod run;
 pub(crate) mod scenes;
+pub(crate) mod soak;
 pub(crate) mod validate;

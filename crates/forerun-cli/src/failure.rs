@@ -72,6 +72,7 @@ macro_rules! input_failure {
 }
 
 input_failure!(
+    forerun::DriverError,
     forerun::PlaybackError,
     forerun::RecordingError,
     forerun::SceneError,

@@ -12,6 +12,7 @@ mod figures;
 mod output;
 mod progress;
 mod results;
+mod soak;
 mod stats;
 mod validate;
 
@@ -45,6 +46,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Check(args)) => commands::check::run(&args),
         Some(Command::Bench(args)) => commands::bench::run(&args),
         Some(Command::Validate(args)) => commands::validate::run(&args),
+        Some(Command::Soak(args)) => commands::soak::run(&args),
         Some(Command::View(_)) => Err(Failure::not_there_yet("view")),
         Some(Command::Bake(_)) => Err(Failure::not_there_yet("bake")),
     }

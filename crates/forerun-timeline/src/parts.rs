@@ -153,7 +153,7 @@ impl Timeline {
     }
 
     /// A timeline of parts. With states it is as far computed as they go; the states at frames with commands are computed once more, to
-    /// know again what the commands did.
+    /// know again what the commands did; where contacts are recorded, those at all frames, to know them again.
     ///
     /// # Errors
     /// The first part that is not possible, or states that the commands do not lead to.
@@ -259,7 +259,8 @@ impl Timeline {
             self.check_changes(changes).map_err(refused)?;
             let table = Arc::clone(self.table(self.horizon()));
             let next = table.with_entries(changes, &table).0;
-            if self.log.at(frame).next().is_some() {
+            // Touches are no part: where they are recorded, all frames are computed once more.
+            if self.settings.record_contacts || self.log.at(frame).next().is_some() {
                 if self.advance() == Progress::Idle || !next.differences(self.table(frame)).is_empty() {
                     let message =
                         "are not the states that the commands lead to: they were computed by another version";

@@ -17,11 +17,9 @@ use forerun_timeline::{Sample, Snapshot};
 use super::picture::Picture;
 use crate::BodyId;
 
-/// After this an offset is down to 5 %. Seconds.
-const BLEND_S: f64 = 0.15;
-
-/// `BLEND_S` divided by ln 20. Seconds.
-const TIME_CONSTANT_S: f64 = BLEND_S / 2.995_732_273_553_991;
+/// An offset is divided by e in this. Seconds.
+const TIME_CONSTANT_S: f64 = Blending::SECONDS / LN_20;
+const LN_20: f64 = 2.995_732_273_553_991;
 
 /// What nobody sees any more. Metres, and radians.
 const DONE_M: f32 = 5e-4;
@@ -82,6 +80,17 @@ pub struct Blending {
     pub off_max_rad: f32,
 }
 
+impl Blending {
+    /// What a body is drawn off the truth is down to 5 % after this. Seconds.
+    pub const SECONDS: f64 = 0.15;
+
+    /// What is left of an offset after some seconds, as a factor.
+    #[must_use]
+    pub fn left_after(seconds: f64) -> f64 {
+        (-seconds / TIME_CONSTANT_S).exp()
+    }
+}
+
 /// The offsets, and what was drawn last.
 #[derive(Debug, Default)]
 pub(super) struct Blend {
@@ -126,7 +135,7 @@ impl Blend {
         }
         let passed_s = (picture.real_s - before.real_s).max(0.0);
         if passed_s > 0.0 && !self.offsets.is_empty() {
-            let factor = (-passed_s / TIME_CONSTANT_S).exp() as f32;
+            let factor = Blending::left_after(passed_s) as f32;
             self.offsets.retain_mut(|(_, offset)| match offset.faded(factor) {
                 Some(faded) => {
                     *offset = faded;
@@ -251,8 +260,7 @@ mod tests {
             }
             drawn = shown;
         }
-        assert_eq!(off, 0.0, "half a second later it is where it is");
-        assert!(blend.offsets().is_empty());
+        assert!(blend.offsets().is_empty(), "half a second later it is where it is");
     }
 
     fn glam_quat(angle: f64) -> Quat {

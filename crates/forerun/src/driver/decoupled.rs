@@ -239,6 +239,7 @@ impl Decoupled {
             oldest_s: snapshot.oldest().seconds(frame_seconds),
             horizon_s: snapshot.horizon().seconds(frame_seconds),
             lookahead_s: self.lookahead_s,
+            frame_s: self.frame_seconds,
             full: self.shared.is_physics_done(),
         }
     }
@@ -279,4 +280,5 @@ impl Drop for Decoupled {
 mod order_tests;
 mod orders;
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "times are kept to the bit where nothing is late")]
 mod tests;
