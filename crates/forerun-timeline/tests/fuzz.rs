@@ -49,6 +49,8 @@ impl Fuzz {
         let settings = TimelineSettings {
             lookahead: session.lookahead,
             past: session.past,
+            bytes_max: session.bytes_max,
+            record_contacts: session.record_contacts,
             ..TimelineSettings::default()
         };
         let timeline = Timeline::new(&bodies, environment, settings).ok()?;
@@ -177,12 +179,15 @@ impl Fuzz {
         let parts = timeline.parts(if with_states { Keep::States } else { Keep::Commands });
         let loaded = Timeline::from_parts(parts.clone()).map_err(|error| format!("loading: {error}"))?;
         let last = if with_states { timeline.valid_to() } else { timeline.oldest() };
-        ensure(loaded.valid_to() == last && loaded.horizon() == last, || {
+        // What is shared in memory is not the same: where memory is short, less may be kept.
+        let whole = loaded.valid_to() == last && loaded.oldest() == timeline.oldest();
+        let short = timeline.settings().bytes_max.is_some() && loaded.valid_to() <= last;
+        ensure((whole || short) && loaded.horizon() == loaded.valid_to(), || {
             format!("saved up to {last}, loaded up to {}", loaded.valid_to())
         })?;
         ensure(loaded.diff(timeline).is_none(), || "loaded states differ".to_owned())?;
         let again = loaded.parts(if with_states { Keep::States } else { Keep::Commands });
-        ensure(again == parts, || format!("saved\n{parts:?}\nand again\n{again:?}"))?;
+        ensure(again == parts || !whole, || format!("saved\n{parts:?}\nand again\n{again:?}"))?;
         self.run.timeline = loaded;
         Ok(())
     }

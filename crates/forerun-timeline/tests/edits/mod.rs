@@ -14,6 +14,9 @@ pub(crate) struct Session {
     pub(crate) bodies: Vec<Spec>,
     pub(crate) past: u32,
     pub(crate) lookahead: u32,
+    /// Most memory for states.
+    pub(crate) bytes_max: Option<usize>,
+    pub(crate) record_contacts: bool,
     /// Bodies come to rest soon.
     pub(crate) restful: bool,
     pub(crate) edits: Vec<Edit>,
@@ -264,14 +267,19 @@ pub(crate) fn session() -> impl Strategy<Value = Session> {
     let few = || prop::collection::vec(spec(Just(Size::One)), 0..10);
     let many = prop::collection::vec(spec(Just(Size::One)), 0..40);
     let pasts = prop_oneof![Just(3_u32), Just(15), Just(1000)];
-    (prop_oneof![few(), few(), many], pasts, 2_u32..25, any::<bool>(), prop::collection::vec(edit(), 1..50))
-        .prop_map(|(bodies, past, lookahead, restful, edits)| Session {
+    let memory = prop_oneof![5 => Just(None), 1 => (10_000_usize..200_000).prop_map(Some)];
+    let settings = (pasts, 2_u32..25, memory, any::<bool>(), any::<bool>());
+    (prop_oneof![few(), few(), many], settings, prop::collection::vec(edit(), 1..50)).prop_map(
+        |(bodies, (past, lookahead, bytes_max, record_contacts, restful), edits)| Session {
             bodies,
             past,
             lookahead,
+            bytes_max,
+            record_contacts,
             restful,
             edits,
-        })
+        },
+    )
 }
 
 fn edit() -> impl Strategy<Value = Edit> {
