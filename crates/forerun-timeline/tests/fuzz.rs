@@ -296,6 +296,7 @@ fn frame_of(at: At, timeline: &Timeline) -> Frame {
         At::Display(frames) => {
             Frame((timeline.display().0 + 1).saturating_add_signed(i64::from(frames)).max(first))
         }
+        At::Never(frames) => Frame(u64::MAX - u64::from(frames)),
         At::Horizon(frames) => {
             Frame(timeline.horizon().0.saturating_add_signed(i64::from(frames)).max(first))
         }

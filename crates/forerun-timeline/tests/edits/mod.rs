@@ -66,6 +66,8 @@ pub(crate) enum At {
     Display(i8),
     /// Before or after the horizon.
     Horizon(i8),
+    /// As late as can be, or nearly.
+    Never(u8),
 }
 
 /// A number that is small, or not.
@@ -307,6 +309,7 @@ fn at() -> impl Strategy<Value = At> {
         4 => (0_u8..30).prop_map(At::Past),
         5 => (-5_i8..6).prop_map(At::Display),
         4 => (-6_i8..6).prop_map(At::Horizon),
+        1 => (0_u8..3).prop_map(At::Never),
     ]
 }
 
