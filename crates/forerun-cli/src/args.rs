@@ -78,6 +78,9 @@ pub(crate) struct RunArgs {
     /// Folder for queue.csv, report.json and charts
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
+    /// File to record the session in, for `forerun replay`
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
     /// Print the report as JSON and nothing else
     #[arg(long)]
     pub(crate) json: bool,

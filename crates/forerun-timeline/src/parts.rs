@@ -213,7 +213,7 @@ impl Timeline {
         self.next_sequence = parts.next_sequence;
         for (index, Command { key, change }) in parts.commands.iter().enumerate() {
             let refuse = |message: String| Err(wrong(format!("commands[{index}]"), message));
-            if key.frame < after || key.frame.0 > FRAME_MAX {
+            if key.frame < after {
                 return refuse(format!("must act after {}, acts at {}", parts.oldest, key.frame));
             }
             if log.contains(key) {

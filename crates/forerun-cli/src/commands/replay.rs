@@ -153,7 +153,13 @@ fn recover(file: &Path, out: &Path, json: bool) -> Result<(), Failure> {
         Some(error) => {
             let length = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
             let lost = length.saturating_sub(error.offset);
-            print(&format!("{}: the last {lost} of {length} bytes cannot be read", salvage.file))?;
+            match lost {
+                0 => print(&format!(
+                    "{}: broke off after {length} bytes; all of them can be read",
+                    salvage.file
+                ))?,
+                _ => print(&format!("{}: the last {lost} of {length} bytes cannot be read", salvage.file))?,
+            }
         }
         None => print(&format!("{}: is whole", salvage.file))?,
     }
