@@ -84,6 +84,7 @@ fn run_writes_a_row_per_picture_a_report_and_charts() {
         "longest_stall_ms",
         "delay_max_s",
         "queue_min",
+        "queue_low",
         "queue_max",
         "slices_max",
         "recomputed",

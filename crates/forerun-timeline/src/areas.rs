@@ -128,21 +128,6 @@ impl Areas {
         true
     }
 
-    /// How many areas have a visitor at a frame for which `counts` holds; it is asked until it does.
-    pub(crate) fn count(&self, frame: Frame, counts: impl Fn(BodyId, &Area) -> bool) -> u32 {
-        let here = |v: &&Visit| v.enters <= frame && frame < v.leaves;
-        let areas = self.parts.iter().flat_map(|part| part.iter());
-        areas.filter(|(area, list)| list.iter().filter(here).any(|v| counts(v.body, area))).count() as u32
-    }
-
-    /// Whether a bound covers an area, and not too many others to list.
-    pub(crate) fn covers(&self, bound: &Aabb, area: &Area) -> bool {
-        match self.cover(bound) {
-            Cover::Areas { min, max } => (0..3).all(|axis| (min[axis]..=max[axis]).contains(&area[axis])),
-            Cover::Large => false,
-        }
-    }
-
     /// The areas that a bound covers; none when they are too many to list.
     pub(crate) fn covered(&self, bound: &Aabb) -> impl Iterator<Item = Area> + use<> {
         let corners = match self.cover(bound) {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use forerun_dynamics::{Body, BodyId, BodyState, Environment};
 use forerun_geometry::{Pose, Vec3};
 
+use crate::commanding::FrameEffects;
 use crate::definitions::Definitions;
 use crate::frame_table::FrameTable;
 use crate::tables::Tables;
@@ -50,8 +51,20 @@ pub struct Snapshot {
     valid_to: Frame,
     pub(crate) tables: Tables,
     definitions: Arc<Definitions>,
-    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body.
-    doubtful: Vec<(BodyId, Frame)>,
+    /// The bodies that wait to be recomputed. Sorted by body.
+    pub(crate) doubtful: Vec<Doubt>,
+    /// What the commands of each frame did.
+    pub(crate) effects: Arc<BTreeMap<Frame, FrameEffects>>,
+}
+
+/// A body that waits to be recomputed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Doubt {
+    pub(crate) body: BodyId,
+    /// The last frame at which it is known to be true.
+    pub(crate) known_to: Frame,
+    /// Whether it is known where the step from there leads, and only what commands then do to it is not.
+    pub(crate) arrives: bool,
 }
 
 impl Timeline {
@@ -63,19 +76,22 @@ impl Timeline {
             tables: self.tables.clone(),
             definitions: Arc::clone(&self.definitions),
             doubtful: self.doubtful(),
+            effects: Arc::clone(&self.effects),
         })
     }
 
-    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body. There may be
-    /// more: whom these will reach is not known yet.
-    pub(crate) fn doubtful(&self) -> Vec<(BodyId, Frame)> {
+    /// The bodies that wait to be recomputed. Sorted by body. There may be more: whom these will reach is not known yet.
+    pub(crate) fn doubtful(&self) -> Vec<Doubt> {
         let mut doubtful = BTreeMap::new();
         for (frame, stale) in &self.stale {
+            let body_now = |body| self.definitions.body(body, *frame);
+            let stepped = stale.stepped_otherwise(self.table(*frame), body_now);
             for body in self.out_of_date(*frame, stale) {
-                doubtful.entry(body).or_insert(*frame);
+                let arrives = stepped.binary_search(&body).is_err();
+                doubtful.entry(body).or_insert(Doubt { body, known_to: *frame, arrives });
             }
         }
-        doubtful.into_iter().collect()
+        doubtful.into_values().collect()
     }
 }
 
@@ -121,8 +137,9 @@ impl Snapshot {
         self.tables.get(frame).into_iter().flat_map(|table| table.iter().map(|(body, _)| body))
     }
 
-    /// The body at a time (seconds since frame 0): exactly the stored state at a frame, between two of them interpolated, past the
-    /// last one that is known held. `None` where the body does not exist.
+    /// The body at a time (seconds since frame 0): exactly the stored state at a frame; between two of them interpolated towards where the
+    /// step leads, so that what a command does to a body is seen at the command's frame and not before; past the last one that is
+    /// known held. `None` where the body does not exist.
     #[must_use]
     pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
         self.sample_at(body, &self.look_at(seconds))
@@ -145,7 +162,7 @@ impl Snapshot {
         }
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
-        bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
+        bodies.extend(self.doubtful.iter().map(|doubt| doubt.body));
         bodies.sort_unstable();
         bodies.dedup();
         bodies.into_iter().for_each(visit);
@@ -154,7 +171,7 @@ impl Snapshot {
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
     #[must_use]
     pub fn queue_min(&self, seconds: f64) -> u64 {
-        let shortest = self.doubtful.iter().map(|(_, frame)| *frame).min();
+        let shortest = self.doubtful.iter().map(|doubt| doubt.known_to).min();
         shortest.unwrap_or_else(|| self.horizon()).since(self.moment(seconds).frame)
     }
 
@@ -164,11 +181,11 @@ impl Snapshot {
         // Bodies that wait to be recomputed have fewer; when all of them wait, the longest counts.
         let last = self.horizon();
         let waiting = self.bodies_at(last).all(|body| self.known_to(body) < last);
-        let longest = self.doubtful.iter().map(|(_, frame)| *frame).max().filter(|_| waiting);
+        let longest = self.doubtful.iter().map(|doubt| doubt.known_to).max().filter(|_| waiting);
         longest.unwrap_or(last).since(self.moment(seconds).frame)
     }
 
-    fn moment(&self, seconds: f64) -> Moment {
+    pub(crate) fn moment(&self, seconds: f64) -> Moment {
         let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest().0 as f64);
         // A time that was computed from a frame means that frame (dissertation, algorithm 1: epsilon).
         let nearest = frames.round();
@@ -179,24 +196,35 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
+    /// The last frame that a display at a time (seconds) has reached; at least the oldest.
+    pub(crate) fn frame_by(&self, seconds: f64) -> Frame {
+        self.moment(seconds).frame
+    }
+
     /// What all samples of a time have in common.
     pub(crate) fn look_at(&self, seconds: f64) -> Look<'_> {
         let moment = self.moment(seconds);
+        let next = moment.frame.next();
         Look {
             moment,
             here: self.tables.get(moment.frame),
-            next: self.tables.get(moment.frame.next()),
+            next: self.tables.get(next),
+            commanded: self.effects.get(&next),
             environment: self.definitions.environment(moment.frame),
         }
     }
 
+    fn doubt(&self, body: BodyId) -> Option<&Doubt> {
+        if self.doubtful.is_empty() {
+            return None;
+        }
+        let found = self.doubtful.binary_search_by_key(&body, |doubt| doubt.body);
+        found.ok().map(|index| &self.doubtful[index])
+    }
+
     /// The last frame at which a body is known to be true.
     pub(crate) fn known_to(&self, body: BodyId) -> Frame {
-        if self.doubtful.is_empty() {
-            return self.horizon();
-        }
-        let found = self.doubtful.binary_search_by_key(&body, |(id, _)| *id);
-        found.map_or_else(|_| self.horizon(), |index| self.doubtful[index].1)
+        self.doubt(body).map_or_else(|| self.horizon(), |doubt| doubt.known_to)
     }
 
     fn sample_at(&self, id: BodyId, look: &Look) -> Option<Sample> {
@@ -206,19 +234,20 @@ impl Snapshot {
 
     /// What a body is at a time, the state that it is shown in, and how sure that is.
     pub(crate) fn shown(&self, id: BodyId, look: &Look) -> Option<(&Body, BodyState, Certainty)> {
-        let known_to = self.known_to(id);
+        let doubt = self.doubt(id);
+        let known_to = doubt.map_or_else(|| self.horizon(), |doubt| doubt.known_to);
+        let arrives = doubt.is_some_and(|doubt| doubt.arrives);
         let Moment { frame, part } = look.moment;
-        if frame > known_to || (frame == known_to && part > 0.0) {
+        if frame > known_to || (frame == known_to && part > 0.0 && !arrives) {
             return self.shown_late(id, look.moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
         let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
         let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
-        let next = look.next.and_then(|table| table.get(id)).filter(|_| part > 0.0);
+        let next = look.arrival(id).filter(|_| part > 0.0);
         Some(match next {
-            // At rest, both are the same memory.
-            Some(next) if !std::ptr::eq(next, state) => {
+            Some(next) if !stays(state, next) => {
                 (body, sample::between((state, next), part, body, &look.environment), certainty)
             }
             _ => (body, *state, certainty),
@@ -249,7 +278,22 @@ pub(crate) struct Look<'a> {
     pub(crate) moment: Moment,
     pub(crate) here: Option<&'a Arc<FrameTable>>,
     pub(crate) next: Option<&'a Arc<FrameTable>>,
+    /// What the commands of the next frame did.
+    commanded: Option<&'a FrameEffects>,
     pub(crate) environment: Environment,
+}
+
+impl<'a> Look<'a> {
+    /// Where the step leads a body, before the commands of the next frame: nothing that is shown before that frame depends on those.
+    fn arrival(&self, body: BodyId) -> Option<&'a BodyState> {
+        let commanded = self.commanded.and_then(|effects| effects.get(&body)?.arrived.as_ref());
+        commanded.or_else(|| self.next?.get(body))
+    }
+}
+
+/// Whether a body is the same at both frames, however long it has been at rest. Mostly they are the same memory.
+fn stays(state: &BodyState, next: &BodyState) -> bool {
+    std::ptr::eq(state, next) || BodyState { rest: state.rest, ..*next }.same_bits(state)
 }
 
 /// A time, as a frame and a part of the next (0 to 1).

@@ -49,6 +49,21 @@ impl Stale {
         stored: &Arc<FrameTable>,
         body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
     ) -> Vec<BodyId> {
+        let mut bodies = self.stepped_otherwise(stored, body_now);
+        if !self.touched.is_empty() {
+            bodies.extend(&self.touched);
+            bodies.sort_unstable();
+            bodies.dedup();
+        }
+        bodies
+    }
+
+    /// Those among them that the step itself may lead elsewhere, and not only commands after it. Sorted.
+    pub(crate) fn stepped_otherwise<'a>(
+        &self,
+        stored: &Arc<FrameTable>,
+        body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
+    ) -> Vec<BodyId> {
         let mut bodies = self.basis.as_ref().map_or_else(Vec::new, |old| stored.differences(old));
         if self.everyone {
             bodies.extend(stored.iter().map(|(body, _)| body));
@@ -59,7 +74,6 @@ impl Stale {
                 .filter(|(body, old)| !same_body(body_now(**body), old.as_ref()))
                 .map(|(b, _)| *b),
         );
-        bodies.extend(&self.touched);
         bodies.sort_unstable();
         bodies.dedup();
         bodies

@@ -48,7 +48,7 @@
 //! let mut samples = Vec::new();
 //! for _ in 0..3 {
 //!     let picture = physics.show(clock.now().as_secs_f64())?;
-//!     picture.snapshot.sample_all(picture.time_s, &mut samples);
+//!     physics.sample_all(&picture, &mut samples);
 //!     for (body, sample) in &samples {
 //!         // draw(body, sample.pose)
 //! #       let _ = (body, sample);
@@ -75,8 +75,8 @@ pub use forerun_scene as scene;
 pub use forerun_timeline as timeline;
 
 pub use driver::{
-    ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, FrameNote, Picture, StepLimits,
-    Threads, ThreadsError,
+    AdoptError, Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, Fork,
+    FrameNote, Hinder, Offset, Picture, Refusal, StepLimits, Threads, ThreadsError,
 };
 pub use forerun_dynamics::{
     Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, Mass, Material,

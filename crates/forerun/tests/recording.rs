@@ -124,19 +124,26 @@ fn what_is_loaded_goes_on_as_if_it_had_not_been_saved() {
     }
 }
 
-/// A recorded session; its bytes, and how often a mark was made.
+/// A recorded session, with orders of all kinds and a fork that is adopted; its bytes.
 fn session(mut timeline: Timeline, seed: u64, name: &str) -> Vec<u8> {
     let temporary = Temporary::new(name);
     let path = temporary.file();
-    let mut random = Random::new(seed);
-    let mut recorder = Recorder::create(&path, &timeline).expect("a place to write");
+    let (mut random, mut forks) = (Random::new(seed), Vec::new());
+    let recorder = Recorder::create(&path, &timeline).expect("a place to write");
     for picture in 0..60 {
-        if random.below(3) == 0 {
+        for _ in 0..random.below(3) {
             let order = random_order(&mut timeline, &mut random);
-            if timeline.obey(order.clone()).is_ok() {
-                recorder.order(&order);
-            }
+            let _ = timeline.obey(order);
         }
+        match picture {
+            20 => forks.push(timeline.fork()),
+            30 => {
+                timeline.adopt(forks.remove(0));
+                recorder.restart(&timeline);
+            }
+            _ => {}
+        }
+        recorder.follow(&timeline);
         timeline.set_display(Frame(picture));
         // Physics is sometimes late.
         for _ in 0..random.below(5) {
@@ -265,11 +272,11 @@ fn a_session_that_broke_off_is_refused_and_recovered() {
     let temporary = Temporary::new("broken-off");
     let path = temporary.file();
     let mut timeline = scenes().remove(0);
-    let mut recorder = Recorder::create(&path, &timeline).expect("a place to write");
+    let recorder = Recorder::create(&path, &timeline).expect("a place to write");
     for frame in 1..10 {
         let change = Change::SetGravity { gravity: Vec3::Y * -(frame as f32) };
-        let key = timeline.change(Frame(frame), change.clone()).expect("it is possible");
-        recorder.order(&Order::Submit(Command { key, change }));
+        timeline.change(Frame(frame), change).expect("it is possible");
+        recorder.follow(&timeline);
     }
     finish(&mut timeline);
     recorder.mark(&timeline);

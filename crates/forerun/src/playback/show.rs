@@ -104,8 +104,10 @@ impl DecoupledShow {
         let lookahead = TimelineSettings { lookahead: settings.lookahead, ..TimelineSettings::default() };
         let timeline = bare_timeline_of(scene, lookahead)?;
         let slow_down = settings.slow_down;
-        let mut driver =
-            Decoupled::start(timeline, DecoupledSettings { slow_down, ..DecoupledSettings::new(threads) })?;
+        let mut driver = Decoupled::start(
+            timeline,
+            DecoupledSettings { slow_down, count_areas: true, ..DecoupledSettings::new(threads) },
+        )?;
         // The scene numbers the bodies that its commands add after those that are there at first, and so do we.
         for _ in script.iter().filter(|c| matches!(c.change, Change::Add { .. })) {
             driver.reserve_body();
@@ -117,7 +119,7 @@ impl DecoupledShow {
     fn picture(&mut self, real_s: f64) -> Result<QueueRow, PlaybackError> {
         let picture = self.driver.show(real_s)?;
         let snapshot = &picture.snapshot;
-        snapshot.sample_all(picture.time_s, &mut self.samples);
+        self.driver.sample_all(&picture, &mut self.samples);
         let starved = self.samples.iter().filter(|(_, s)| s.certainty > Certainty::Presumed).count();
         let physics_s = snapshot.valid_to().seconds(snapshot.frame_seconds());
         let slices_max = picture.note.map_or(1, |note| u32::from(note.slices_max));
@@ -134,7 +136,8 @@ impl DecoupledShow {
             starved: starved as u32,
             slices_max,
             time_step_s: f64::from(snapshot.frame_seconds()) / f64::from(slices_max),
-            areas_active: picture.note.map_or(0, |note| note.areas_active),
+            areas_active: picture.note.and_then(|note| note.areas_active).unwrap_or(0),
+            clock_rate: picture.rate,
             computed: ahead + edits - self.computed,
             recomputed: edits - self.recomputed,
             ..QueueRow::default()
@@ -155,8 +158,8 @@ impl DecoupledShow {
             };
         }
         match self.driver.refusals().into_iter().next() {
-            Some((_, error)) => {
-                Err(PlaybackError::Change { scene: self.scene.clone(), message: error.to_string() })
+            Some(refusal) => {
+                Err(PlaybackError::Change { scene: self.scene.clone(), message: refusal.to_string() })
             }
             None => Ok(()),
         }
@@ -190,6 +193,7 @@ impl CoupledShow {
             time_display_s: time_s,
             time_physics_s: time_s,
             time_physics_low_s: time_s,
+            clock_rate: 1.0,
             slices_max,
             time_step_s: (time_s - before_s) / f64::from(slices_max),
             computed: if time_s > before_s { self.driver.world().bodies().len() as u64 } else { 0 },
