@@ -128,6 +128,15 @@ pub(crate) struct CheckArgs {
     /// Frames that are kept and compared
     #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) frames: u32,
+    /// Frames that pass before the first edit, so that the scene can come to rest
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub(crate) settle: u32,
+    /// Frames that the display moves on after each edit
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    pub(crate) display_step: u32,
+    /// Edits after which the reference computes, and everything is compared: more take less time
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) compare_every: u32,
     /// Thread counts to compare, like 1,2,4
     #[arg(long, value_delimiter = ',', default_value = "1,2", value_parser = threads())]
     pub(crate) threads: Vec<u16>,

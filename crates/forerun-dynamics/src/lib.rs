@@ -18,6 +18,7 @@ mod solver;
 pub mod stage;
 pub mod state;
 pub mod step;
+pub mod touch;
 pub mod world;
 
 pub use body::{Body, BodyId, BodyKind, Material, Spring};
@@ -26,4 +27,5 @@ pub use settings::{Environment, EnvironmentError, ShockPropagation, StepSettings
 pub use stage::{Observer, Stage, Unobserved};
 pub use state::BodyState;
 pub use step::{Group, Member, StepReport};
+pub use touch::{Touch, Touches};
 pub use world::World;

@@ -59,6 +59,8 @@ pub enum Mutation {
     NoNewcomers,
     /// A body that a command woke before it was changed sleeps or wakes on as it did.
     NoWaking,
+    /// Pairs and contacts reach the step in the order in which they were found.
+    Unsorted,
     /// States that differ less than this (m, m/s) are taken to be equal.
     Tolerance(f32),
 }
@@ -344,13 +346,18 @@ impl<'a> Search<'a, '_> {
             (*a, *b) = (placed(*a), placed(*b));
             *a != u32::MAX && *b != u32::MAX
         });
-        self.pairs.sort();
+        let sorted = self.inputs.mutation != Mutation::Unsorted;
+        if sorted {
+            self.pairs.sort();
+        }
         self.contacts.retain_mut(|contact| {
             (contact.first, contact.second) = (placed(contact.first), placed(contact.second));
             contact.first != u32::MAX && contact.second != u32::MAX
         });
         // Several manifolds of a pair stay in their order.
-        self.contacts.sort_by_key(|contact| (contact.first, contact.second));
+        if sorted {
+            self.contacts.sort_by_key(|contact| (contact.first, contact.second));
+        }
         for met in &self.met {
             self.scratch.met_index[met.member.id.0 as usize] = 0;
         }

@@ -41,10 +41,21 @@ pub(crate) struct Definitions {
 impl Definitions {
     /// Bodies 0, 1, 2, ... that exist from frame 0 on.
     pub(crate) fn new(bodies: Vec<(Arc<BodyDef>, Arc<Body>)>, environment: Environment) -> Definitions {
-        let bodies = bodies
-            .into_iter()
-            .map(|(def, body)| Arc::new(History { def: Some(def), entries: vec![(Frame(0), Some(body))] }));
-        Definitions { bodies: bodies.collect(), environments: vec![(Frame(0), environment)] }
+        let bodies = bodies.into_iter().map(|(def, body)| (Some(def), Some(body)));
+        Definitions::at(Frame(0), bodies, environment)
+    }
+
+    /// For the names 0, 1, 2, ...: how each was made, if it was, and what it is from a frame on, if it is there.
+    pub(crate) fn at(
+        from: Frame,
+        bodies: impl IntoIterator<Item = (Option<Arc<BodyDef>>, Option<Arc<Body>>)>,
+        environment: Environment,
+    ) -> Definitions {
+        let bodies = bodies.into_iter().map(|(def, body)| {
+            let entries = body.map(|body| (from, Some(body)));
+            Arc::new(History { def, entries: entries.into_iter().collect() })
+        });
+        Definitions { bodies: bodies.collect(), environments: vec![(from, environment)] }
     }
 
     /// How many names are in use.

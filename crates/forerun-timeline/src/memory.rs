@@ -74,8 +74,9 @@ impl Timeline {
         // Snapshots share the definitions: to touch them is to copy, so only where there is something to forget.
         if !commanded.is_empty() || self.definitions.has_gravity_before(oldest) {
             Arc::make_mut(&mut self.definitions).forget_before(oldest, commanded.into_iter());
-            self.undo.forget_to(oldest);
         }
+        // Also where no command is left of what was taken back.
+        self.undo.forget_to(oldest);
         if self.effects.keys().next().is_some_and(|first| *first <= oldest) {
             let effects = Arc::make_mut(&mut self.effects);
             let kept = effects.split_off(&oldest.next());

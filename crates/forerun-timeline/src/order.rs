@@ -24,8 +24,8 @@ pub enum Order {
 /// What takes back, or does again, the local user's orders. The last is the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UndoLog {
-    undo: Vec<Order>,
-    redo: Vec<Order>,
+    pub(crate) undo: Vec<Order>,
+    pub(crate) redo: Vec<Order>,
 }
 
 impl UndoLog {

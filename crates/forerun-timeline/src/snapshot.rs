@@ -149,18 +149,23 @@ impl Snapshot {
     pub fn sample_all(&self, seconds: f64, samples: &mut Vec<(BodyId, Sample)>) {
         samples.clear();
         let look = self.look_at(seconds);
-        let frame = look.moment.frame.min(self.horizon());
+        self.for_each_shown(look.moment, |body| {
+            samples.extend(self.sample_at(body, &look).map(|sample| (body, sample)));
+        });
+    }
+
+    /// Calls `visit` with the bodies of which there may be something to show at a moment, in the order of their ids.
+    pub(crate) fn for_each_shown(&self, moment: Moment, visit: impl FnMut(BodyId)) {
+        let frame = moment.frame.min(self.horizon());
         if self.doubtful.is_empty() {
-            let bodies = self.bodies_at(frame);
-            samples.extend(bodies.filter_map(|body| Some((body, self.sample_at(body, &look)?))));
-            return;
+            return self.bodies_at(frame).for_each(visit);
         }
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
         bodies.extend(self.doubtful.iter().map(|doubt| doubt.body));
         bodies.sort_unstable();
         bodies.dedup();
-        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, &look)?))));
+        bodies.into_iter().for_each(visit);
     }
 
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
@@ -192,13 +197,14 @@ impl Snapshot {
     }
 
     /// What all samples of a time have in common.
-    fn look_at(&self, seconds: f64) -> Look<'_> {
+    pub(crate) fn look_at(&self, seconds: f64) -> Look<'_> {
         let moment = self.moment(seconds);
+        let next = moment.frame.next();
         Look {
             moment,
             here: self.tables.get(moment.frame),
-            next: self.tables.get(moment.frame.next()),
-            commanded: self.effects.get(&moment.frame.next()),
+            next: self.tables.get(next),
+            commanded: self.effects.get(&next),
             environment: self.definitions.environment(moment.frame),
         }
     }
@@ -212,62 +218,66 @@ impl Snapshot {
     }
 
     /// The last frame at which a body is known to be true.
-    fn known_to(&self, body: BodyId) -> Frame {
+    pub(crate) fn known_to(&self, body: BodyId) -> Frame {
         self.doubt(body).map_or_else(|| self.horizon(), |doubt| doubt.known_to)
     }
 
     fn sample_at(&self, id: BodyId, look: &Look) -> Option<Sample> {
-        let Moment { frame, part } = look.moment;
+        let (body, state, certainty) = self.shown(id, look)?;
+        Some(sample_of(body, &state, certainty))
+    }
+
+    /// What a body is at a time, the state that it is shown in, and how sure that is.
+    pub(crate) fn shown(&self, id: BodyId, look: &Look) -> Option<(&Body, BodyState, Certainty)> {
         let doubt = self.doubt(id);
         let known_to = doubt.map_or_else(|| self.horizon(), |doubt| doubt.known_to);
         let arrives = doubt.is_some_and(|doubt| doubt.arrives);
+        let Moment { frame, part } = look.moment;
         if frame > known_to || (frame == known_to && part > 0.0 && !arrives) {
-            return self.sample_late(id, look.moment, known_to);
+            return self.shown_late(id, look.moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
         let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
         let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
-        let next = look.arrival(id).filter(|_| part > 0.0);
+        // Where the step leads, before the commands: nothing that is shown before their frame depends on those.
+        let arrived = look.commanded.and_then(|effects| effects.get(&id)?.arrived.as_ref());
+        let next = arrived.or_else(|| look.next?.get(id)).filter(|_| part > 0.0);
         Some(match next {
             Some(next) if !stays(state, next) => {
-                let shown = sample::between((state, next), part, body, &look.environment);
-                sample_of(body, &shown, certainty)
+                (body, sample::between((state, next), part, body, &look.environment), certainty)
             }
-            _ => sample_of(body, state, certainty),
+            _ => (body, *state, certainty),
         })
     }
 
     /// A body after the last frame at which it is known.
-    fn sample_late(&self, id: BodyId, moment: Moment, known_to: Frame) -> Option<Sample> {
+    fn shown_late(
+        &self,
+        id: BodyId,
+        moment: Moment,
+        known_to: Frame,
+    ) -> Option<(&Body, BodyState, Certainty)> {
         let body = self.definitions.body(id, known_to)?;
         let state = self.state(id, known_to)?;
         if known_to == self.horizon() {
-            return Some(sample_of(body, state, Certainty::Held));
+            return Some((body, *state, Certainty::Held));
         }
         let late = moment.frame.since(known_to) as f32 + moment.part;
         let shown = sample::beyond(state, late.min(EXTRAPOLATED_FRAMES), self.frame_seconds());
         let certainty = if late <= EXTRAPOLATED_FRAMES { Certainty::Extrapolated } else { Certainty::Held };
-        Some(sample_of(body, &shown, certainty))
+        Some((body, shown, certainty))
     }
 }
 
 /// A time, and what is stored around it.
-struct Look<'a> {
-    moment: Moment,
-    here: Option<&'a Arc<FrameTable>>,
-    next: Option<&'a Arc<FrameTable>>,
-    /// What commands do at the next frame.
+pub(crate) struct Look<'a> {
+    pub(crate) moment: Moment,
+    pub(crate) here: Option<&'a Arc<FrameTable>>,
+    pub(crate) next: Option<&'a Arc<FrameTable>>,
+    /// What the commands of the next frame did.
     commanded: Option<&'a FrameEffects>,
-    environment: Environment,
-}
-
-impl<'a> Look<'a> {
-    /// Where the step leads a body, before the commands of the next frame: nothing that is shown before that frame depends on those.
-    fn arrival(&self, body: BodyId) -> Option<&'a BodyState> {
-        let commanded = self.commanded.and_then(|effects| effects.get(&body)?.arrived.as_ref());
-        commanded.or_else(|| self.next?.get(body))
-    }
+    pub(crate) environment: Environment,
 }
 
 /// Whether a body is the same at both frames, however long it has been at rest. Mostly they are the same memory.

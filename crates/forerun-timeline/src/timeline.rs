@@ -271,7 +271,7 @@ pub(crate) fn ignored(effects: &BTreeMap<Frame, FrameEffects>) -> u64 {
 }
 
 /// An edge of areas that suits the bodies: four times the radius of the middle one of those that move. Metres.
-fn area_edge<'a>(bodies: impl Iterator<Item = &'a Body>) -> f32 {
+pub(crate) fn area_edge<'a>(bodies: impl Iterator<Item = &'a Body>) -> f32 {
     let mut radii: Vec<f32> =
         bodies.filter(|b| b.is_dynamic() && b.radius.is_finite()).map(|b| b.radius).collect();
     radii.sort_unstable_by(f32::total_cmp);

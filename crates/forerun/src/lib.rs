@@ -66,6 +66,7 @@
 
 mod driver;
 mod playback;
+pub mod recording;
 mod staging;
 
 pub use forerun_dynamics as dynamics;
@@ -85,9 +86,11 @@ pub use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Sphere};
 pub use forerun_geometry::{Pose, Quat, Shape, Vec3};
 pub use forerun_scene::{Scene, SceneError};
 pub use forerun_timeline::{
-    Change, Command, CommandError, CommandKey, Frame, Order, Sample, Snapshot, Timeline, TimelineSettings,
+    Change, Command, CommandError, CommandKey, Frame, Keep, Order, Sample, Snapshot, Timeline,
+    TimelineSettings,
 };
 pub use playback::{
     DriverKind, Playback, PlaybackError, PlaybackSettings, QueueRow, Report, play, write_queue_csv,
 };
+pub use recording::{Recorder, Recording, RecordingError, load_timeline, save_timeline};
 pub use staging::{StagingError, timeline_of, world_of};

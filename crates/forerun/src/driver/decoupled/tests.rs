@@ -108,23 +108,45 @@ fn a_local_change_acts_on_the_first_frame_after_the_displayed_one() {
     assert!(state(&after, 2, 20).same_bits(&state(&before, 2, 20)), "a body out of reach was changed");
 }
 
-#[test]
-fn a_long_drag_keeps_physics_from_computing_what_the_next_move_throws_away() {
-    let mut driver = filled();
-    let valid_to = |driver: &Decoupled| driver.last_picture().snapshot.valid_to();
-    for move_number in 0..10_u8 {
-        let velocity = Vec3::X * f32::from(move_number + 1);
-        let body = BodyId(2);
-        driver.change(Change::SetVelocity { body, velocity, angular_velocity: Vec3::ZERO }).expect("room");
-        assert!(eventually(|| valid_to(&driver) < Frame(u64::from(LOOKAHEAD))), "move {move_number}");
-        driver.show(0.0).expect("physics lives");
+/// A drag of a body far from the others: a command at every picture, which physics hears of before the next. The fewest frames ahead.
+fn dragged(driver: &mut Decoupled, mut after: impl FnMut(&Decoupled)) -> u64 {
+    let mut fewest = u64::MAX;
+    for picture in 1..=60 {
+        let shown = driver.show(f64::from(picture) * FRAME_S).expect("physics lives");
+        fewest = fewest.min(shown.snapshot.horizon().since(shown.frame));
+        let others = shown.snapshot.sample(BodyId(1), shown.time_s).expect("the body is there");
+        assert!(others.certainty <= forerun_timeline::Certainty::Presumed, "picture {picture}: {others:?}");
+        let target = Vec3::new(30.0, 5.0 + 0.05 * f64::from(picture) as f32, 0.0);
+        let spring =
+            crate::dynamics::Spring { anchor: Vec3::ZERO, target, frequency_hz: 5.0, damping_ratio: 1.0 };
+        driver.change(Change::Hold { body: BodyId(2), spring }).expect("room");
+        after(driver);
     }
-    std::thread::sleep(Duration::from_millis(20));
-    assert!(valid_to(&driver) < Frame(u64::from(LOOKAHEAD)), "{}", valid_to(&driver));
-    assert!(eventually(|| {
-        driver.show(0.0).expect("physics lives");
-        full(&driver)
-    }));
+    fewest
+}
+
+#[test]
+fn a_cheap_drag_leaves_the_queue_full() {
+    let mut driver = filled();
+    let fewest = dragged(&mut driver, |driver| assert!(eventually(|| full(driver))));
+    assert!(fewest >= u64::from(LOOKAHEAD) - 1, "{fewest}");
+    let picture = driver.last_picture();
+    let held = picture.snapshot.sample(BodyId(2), picture.time_s).expect("it is there");
+    assert!(held.certainty == forerun_timeline::Certainty::Exact && held.pose.position.y > 6.0, "{held:?}");
+}
+
+#[test]
+fn a_costly_drag_keeps_physics_from_computing_what_the_next_move_throws_away() {
+    // Two milliseconds a frame: eight or so from one picture to the next, and not twenty.
+    let mut driver = slow(2);
+    driver.show(0.0).expect("physics lives");
+    assert!(eventually(|| full(&driver)));
+    let before = driver.last_picture().stats;
+    dragged(&mut driver, |_| std::thread::sleep(Duration::from_millis(16)));
+    let after = driver.last_picture().stats;
+    let again = after.edits.frames - before.edits.frames;
+    assert!(again < 60 * u64::from(LOOKAHEAD) * 3 / 4, "{again} frames for 60 pictures");
+    assert!(driver.last_picture().snapshot.horizon() > driver.last_picture().frame);
 }
 
 #[test]
