@@ -64,7 +64,7 @@ impl Shared {
             notes: FrameNotes::with_capacity(notes_kept),
             panic: Mutex::new(None),
             dropped_to: AtomicU64::new(u64::MAX),
-            display: AtomicU64::new(0),
+            display: AtomicU64::new(timeline.display().0),
             pictures: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
             done: AtomicBool::new(false),

@@ -108,6 +108,35 @@ fn a_local_change_acts_on_the_first_frame_after_the_displayed_one() {
     assert!(state(&after, 2, 20).same_bits(&state(&before, 2, 20)), "a body out of reach was changed");
 }
 
+#[test]
+fn a_timeline_that_was_shown_before_goes_on_from_there() {
+    let mut timeline = timeline();
+    timeline.set_display(Frame(30));
+    let mut driver = Decoupled::start(timeline, settings()).expect("a thread");
+    assert!(eventually(|| full(&driver)));
+    let picture = driver.show(1000.0).expect("physics lives");
+    assert_eq!((picture.frame, picture.time_s), (Frame(30), 30.0 * FRAME_S));
+    assert_eq!(picture.snapshot.horizon(), Frame(30 + u64::from(LOOKAHEAD)));
+}
+
+#[test]
+fn the_queue_has_its_bound_whatever_the_display_does() {
+    let mut driver = filled();
+    let mut real_s = 0.0;
+    for (speed, pictures) in [(1.0, 20), (0.0, 20), (10.0, 40), (0.5, 20)] {
+        driver.set_speed(speed).expect("a possible speed");
+        for _ in 0..pictures {
+            real_s += FRAME_S;
+            let before = driver.last_picture().time_s;
+            let shown = driver.show(real_s).expect("physics lives");
+            assert!(shown.time_s >= before && shown.time_s <= before + 1.05 * speed * FRAME_S + 1e-9);
+            std::thread::sleep(Duration::from_millis(1));
+            let now = driver.last_picture();
+            assert!(now.snapshot.horizon() <= now.frame.plus(u64::from(LOOKAHEAD)), "{now:?}");
+        }
+    }
+}
+
 /// A drag of a body far from the others: a command at every picture, which physics hears of before the next. The fewest frames ahead.
 fn dragged(driver: &mut Decoupled, mut after: impl FnMut(&Decoupled)) -> u64 {
     let mut fewest = u64::MAX;
