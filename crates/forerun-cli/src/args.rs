@@ -185,7 +185,7 @@ pub(crate) struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ValidateArgs {
-    /// Cases to run [default: all but timeline_bits, timeline_cost and timeline_scrub, which take minutes]
+    /// Cases to run [default: all but those that take minutes]
     pub(crate) cases: Vec<String>,
     /// Exit with code 1 when a figure misses its limit
     #[arg(long)]

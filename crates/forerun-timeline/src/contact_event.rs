@@ -15,8 +15,8 @@ use crate::{Frame, Snapshot};
 pub enum ContactKind {
     /// They touch, and did not in the frame before.
     Begin,
-    /// They push each other harder than in the frame before, by as much as was asked for. Weight that rests pushes alike in every frame and
-    /// is no hit; so are hits what makes a noise. A landing may be spread over two frames, the first of which only slows: both may be hits.
+    /// They come together at least as fast as was asked for ([`Touch::speed`]), and did not in the frame before: what makes a noise. The
+    /// impulse may be that of the next frame in part, as what lands is slowed first and stopped then.
     Hit,
     /// They touched in the frame before, and do not any more.
     End,
@@ -35,7 +35,8 @@ pub struct ContactEvent {
 
 impl Snapshot {
     /// Who touched whom in the step that led to a frame, sorted by pair. None where the frame is not stored, at frame 0, and where touches
-    /// are not recorded (see [`TimelineSettings::record_contacts`](crate::TimelineSettings::record_contacts)).
+    /// are not recorded (see [`TimelineSettings::record_contacts`](crate::TimelineSettings::record_contacts)). Beyond
+    /// [`valid_to`](Snapshot::valid_to) it may still come out otherwise.
     #[must_use]
     pub fn contacts(&self, frame: Frame) -> Vec<Touch> {
         let touches = self.tables.get(frame).map(|table| table.touches());
@@ -74,16 +75,16 @@ impl Snapshot {
         events
     }
 
-    /// The touches after one time and up to another (seconds since frame 0) that push harder than in the frame before by at least an impulse
-    /// (N s), sorted by frame, then pair. As [`Snapshot::contact_events`] otherwise.
+    /// The touches after one time and up to another (seconds since frame 0) in which two bodies come together at a speed (m/s) or faster,
+    /// and did not in the frame before, sorted by frame, then pair. As [`Snapshot::contact_events`] otherwise.
     #[must_use]
-    pub fn hits(&self, from: f64, to: f64, impulse_min: f32) -> Vec<ContactEvent> {
-        let mut events = self.events(from, to, impulse_min);
+    pub fn hits(&self, from: f64, to: f64, speed_min: f32) -> Vec<ContactEvent> {
+        let mut events = self.events(from, to, speed_min);
         events.retain(|event| event.kind == ContactKind::Hit);
         events
     }
 
-    fn events(&self, from: f64, to: f64, impulse_min: f32) -> Vec<ContactEvent> {
+    fn events(&self, from: f64, to: f64, speed_min: f32) -> Vec<ContactEvent> {
         let mut events = Vec::new();
         if from.is_nan() || to.is_nan() {
             return events;
@@ -92,7 +93,7 @@ impl Snapshot {
         // Within a run of equal tables nothing begins or ends.
         let runs = self.tables.runs().zip(self.tables.runs().skip(1));
         for ((_, before), (frame, now)) in runs.filter(|(_, (frame, _))| *frame > after && *frame <= last) {
-            events_of(frame, Some(before.touches()), now.touches(), impulse_min, &mut events);
+            events_of(frame, Some(before.touches()), now.touches(), speed_min, &mut events);
         }
         events
     }
@@ -104,7 +105,7 @@ pub(crate) fn events_of(
     frame: Frame,
     before: Option<&TouchTable>,
     now: &TouchTable,
-    impulse_min: f32,
+    speed_min: f32,
     events: &mut Vec<ContactEvent>,
 ) {
     let nothing = TouchTable::default();
@@ -130,8 +131,8 @@ pub(crate) fn events_of(
                 if last.is_none() {
                     add(ContactKind::Begin, touch);
                 }
-                let rise = touch.impulse - last.map_or(0.0, |last| last.impulse);
-                if before.is_some() && rise >= impulse_min {
+                let fast = |touch: &Touch| touch.speed >= speed_min;
+                if before.is_some() && fast(touch) && !last.is_some_and(fast) {
                     add(ContactKind::Hit, touch);
                 }
             }

@@ -18,22 +18,23 @@ pub enum LateEdits {
     #[default]
     LetBe,
     /// Events that did not happen after all are retracted and new ones are told, as long as their frames are stored: what was told less what
-    /// was retracted is what [`Snapshot::contact_events`] lists. An event that only changed in strength or place stays as it was told.
+    /// was retracted is what [`Snapshot::contact_events`] lists. An event that only changed in strength or place stays as it was told. Keeps
+    /// the states of all frames that can still be corrected, as they were told.
     Correct,
 }
 
 /// What a [`ContactListener`] is to tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ListenerSettings {
-    /// A touch that pushes harder than in the frame before by so much is a [hit](crate::ContactKind::Hit). N s; infinite (the default) for no hits.
-    pub hit_impulse_min: f32,
+    /// Two bodies that come together at this speed or faster [hit](crate::ContactKind::Hit) each other. m/s; infinite (the default) for no hits.
+    pub hit_speed_min: f32,
     /// What is done about events behind the display.
     pub late_edits: LateEdits,
 }
 
 impl Default for ListenerSettings {
     fn default() -> Self {
-        ListenerSettings { hit_impulse_min: f32::INFINITY, late_edits: LateEdits::LetBe }
+        ListenerSettings { hit_speed_min: f32::INFINITY, late_edits: LateEdits::LetBe }
     }
 }
 
@@ -94,7 +95,7 @@ impl Told {
     fn events(&self, settings: &ListenerSettings) -> Vec<ContactEvent> {
         let mut events = Vec::new();
         let before = self.before.as_ref().map(|before| before.touches());
-        events_of(self.frame, before, self.now.touches(), settings.hit_impulse_min, &mut events);
+        events_of(self.frame, before, self.now.touches(), settings.hit_speed_min, &mut events);
         events
     }
 }

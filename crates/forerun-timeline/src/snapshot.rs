@@ -285,7 +285,7 @@ pub(crate) struct Look<'a> {
 
 impl<'a> Look<'a> {
     /// Where the step leads a body, before the commands of the next frame: nothing that is shown before that frame depends on those.
-    fn arrival(&self, body: BodyId) -> Option<&'a BodyState> {
+    pub(crate) fn arrival(&self, body: BodyId) -> Option<&'a BodyState> {
         let commanded = self.commanded.and_then(|effects| effects.get(&body)?.arrived.as_ref());
         commanded.or_else(|| self.next?.get(body))
     }

@@ -35,7 +35,7 @@ pub struct TimelineSettings {
     pub bytes_max: Option<usize>,
     /// Edge of an area (a cell of the grid that says who is near). Metres, above 0; `None` chooses one from the bodies.
     pub area_m: Option<f32>,
-    /// Whether it is stored who touched whom, where and how hard; see [`Snapshot::contacts`](crate::Snapshot::contacts). Costs 40 bytes a
+    /// Whether it is stored who touched whom, where and how hard; see [`Snapshot::contacts`](crate::Snapshot::contacts). Costs 44 bytes a
     /// touching pair and frame in which something about it changes. Default `false`.
     pub record_contacts: bool,
 }

@@ -1,74 +1,16 @@
-//! Recorded contacts against full runs, events against the lists that they are made from, and what listeners tell against both.
+//! Recorded contacts against full runs, and events against the lists that they are made from.
 
+mod contact_sessions;
 mod scenes;
 
-use std::collections::BTreeSet;
-
+use contact_sessions::{SETTINGS, environment, plain_events, run, session};
 use forerun_dynamics::{BodyDef, BodyId, Environment};
 use forerun_geometry::{Pose, Shape, Vec3};
-use forerun_timeline::check::{Random, random_change};
+use forerun_timeline::check::Random;
 use forerun_timeline::{
-    Change, Command, CommandKey, ContactEvent, ContactKind, ContactListener, ContactNotice, Frame, Keep,
-    LateEdits, ListenerSettings, Progress, Snapshot, Timeline, TimelineSettings, Touch,
+    Change, Command, ContactEvent, ContactKind, ContactListener, Frame, Keep, Timeline, TimelineSettings,
+    Touch,
 };
-
-const SETTINGS: TimelineSettings =
-    TimelineSettings { lookahead: 25, past: 30, bytes_max: None, area_m: None, record_contacts: true };
-
-fn environment(seed: u64) -> Environment {
-    let mut environment = Environment::default();
-    if seed % 2 == 1 {
-        environment.settings.rest_seconds = 0.1;
-    }
-    environment
-}
-
-fn run(timeline: &mut Timeline) {
-    while timeline.advance() != Progress::Idle {}
-}
-
-/// Random edits of the stored past and the future between frames of work; commands may be taken back. `at` is called as the display goes on.
-fn session(
-    bodies: &[BodyDef],
-    seed: u64,
-    settings: TimelineSettings,
-    mut at: impl FnMut(&Timeline),
-) -> (Timeline, Vec<Command>) {
-    let mut timeline = Timeline::new(bodies, environment(seed), settings).unwrap();
-    let mut random = Random::new(seed);
-    let mut commands: Vec<Command> = Vec::new();
-    let mut sequence = 0;
-    while timeline.display() < Frame(70) {
-        match random.below(9) {
-            0..2 => {
-                let from = timeline.oldest().0 + 1;
-                let frame = Frame(from + random.below(timeline.horizon().0 + 8 - from));
-                let change = random_change(&mut timeline, frame, &mut random);
-                sequence += 1;
-                let command = Command { key: CommandKey { frame, source: 1, sequence }, change };
-                if timeline.submit(command.clone()).is_ok() {
-                    commands.push(command);
-                }
-            }
-            2 => {
-                let index = random.below(commands.len() as u64 + 1) as usize;
-                if index < commands.len() && timeline.retract(&commands[index].key) {
-                    commands.swap_remove(index);
-                }
-            }
-            3 => timeline.set_display(Frame(timeline.display().0 + 1 + random.below(5))),
-            _ => {
-                for _ in 0..=random.below(12) {
-                    let _ = timeline.advance();
-                }
-            }
-        }
-        at(&timeline);
-    }
-    run(&mut timeline);
-    at(&timeline);
-    (timeline, commands)
-}
 
 /// A full simulation by one thread that knows all commands from the start, computes all bodies in every frame, and records.
 fn full_run(bodies: &[BodyDef], commands: &[Command], seed: u64, like: &Timeline) -> Timeline {
@@ -193,29 +135,6 @@ fn what_rests_costs_nothing() {
     assert!(bytes[2] == bytes[1] && bytes[1] < 20_000, "{bytes:?}");
 }
 
-/// Events by comparing whole lists.
-fn plain_events(snapshot: &Snapshot, frame: Frame, impulse_min: f32) -> Vec<ContactEvent> {
-    let (before, now) = (snapshot.contacts(Frame(frame.0 - 1)), snapshot.contacts(frame));
-    let find = |list: &[Touch], t: &Touch| -> Option<Touch> {
-        list.iter().find(|o| (o.first, o.second) == (t.first, t.second)).copied()
-    };
-    let mut events = Vec::new();
-    for touch in &now {
-        let last = find(&before, touch);
-        if last.is_none() {
-            events.push(ContactEvent { frame, kind: ContactKind::Begin, touch: *touch });
-        }
-        if touch.impulse - last.map_or(0.0, |last| last.impulse) >= impulse_min {
-            events.push(ContactEvent { frame, kind: ContactKind::Hit, touch: *touch });
-        }
-    }
-    for touch in before.iter().filter(|touch| find(&now, touch).is_none()) {
-        events.push(ContactEvent { frame, kind: ContactKind::End, touch: *touch });
-    }
-    events.sort_by_key(|event| (event.touch.first, event.touch.second, event.kind));
-    events
-}
-
 #[test]
 fn events_are_what_the_lists_say() {
     let (mut begins, mut ends, mut hits) = (0, 0, 0);
@@ -228,7 +147,7 @@ fn events_are_what_the_lists_say() {
             [(0, horizon), (oldest, oldest + 9), (oldest + 20, horizon), (oldest + 7, oldest + 7)]
         {
             let expected: Vec<ContactEvent> = (from.max(oldest) + 1..=to)
-                .flat_map(|frame| plain_events(&snapshot, Frame(frame), 50.0))
+                .flat_map(|frame| plain_events(&snapshot, Frame(frame), 0.3))
                 .collect();
             let (expected_hits, expected): (Vec<_>, Vec<_>) =
                 expected.into_iter().partition(|event| event.kind == ContactKind::Hit);
@@ -236,7 +155,7 @@ fn events_are_what_the_lists_say() {
             for (early, late) in [(0.0, 0.0), (0.3, 0.9)] {
                 let range = ((from as f64 + early) * dt, (to as f64 + late) * dt);
                 assert_eq!(snapshot.contact_events(range.0, range.1), expected);
-                assert_eq!(snapshot.hits(range.0, range.1, 50.0), expected_hits);
+                assert_eq!(snapshot.hits(range.0, range.1, 0.3), expected_hits);
             }
             begins += expected.iter().filter(|event| event.kind == ContactKind::Begin).count();
             ends += expected.iter().filter(|event| event.kind == ContactKind::End).count();
@@ -246,167 +165,6 @@ fn events_are_what_the_lists_say() {
         assert_eq!(snapshot.contact_events(0.0, f64::NAN), []);
     }
     assert!(begins > 100 && ends > 50 && hits > 100, "{begins} begins, {ends} ends, {hits} hits");
-}
-
-type Key = (Frame, BodyId, BodyId, ContactKind);
-
-fn key(event: &ContactEvent) -> Key {
-    (event.frame, event.touch.first, event.touch.second, event.kind)
-}
-
-fn display_s(timeline: &Timeline) -> f64 {
-    (timeline.display().0 as f64 + 0.4)
-        * f64::from(timeline.environment_at(timeline.oldest()).settings.frame_seconds)
-}
-
-#[test]
-fn edits_of_the_future_are_told_as_they_come_true_and_only_once() {
-    for (scene, bodies) in scenes::all() {
-        let settings = TimelineSettings { past: 1000, ..SETTINGS };
-        let mut timeline = Timeline::new(&bodies, environment(1), settings).unwrap();
-        let mut random = Random::new(77);
-        let listen = ListenerSettings { hit_impulse_min: 20.0, ..ListenerSettings::default() };
-        let mut listener = ContactListener::new(listen);
-        let mut told: Vec<ContactEvent> = Vec::new();
-        let mut undone = 0;
-        let mut foreseen: BTreeSet<Key> = BTreeSet::new();
-        while timeline.display() < Frame(80) {
-            if random.below(4) == 0 {
-                let frame = Frame(timeline.display().0 + 1 + random.below(20));
-                let change = random_change(&mut timeline, frame, &mut random);
-                let _ = timeline.change(frame, change);
-            }
-            // Physics is late at times.
-            for _ in 0..random.below(30) {
-                let _ = timeline.advance();
-            }
-            timeline.set_display(Frame(timeline.display().0 + random.below(3)));
-            let (snapshot, now) = (timeline.snapshot(), display_s(&timeline));
-            for notice in listener.pass(&snapshot, now) {
-                let ContactNotice::Happened(event) = notice else { panic!("{notice:?}") };
-                assert!(event.frame <= timeline.display() && event.frame <= snapshot.valid_to(), "{event:?}");
-                told.push(event);
-            }
-            foreseen.extend(snapshot.contact_events(now, 100.0).iter().map(key));
-        }
-        run(&mut timeline);
-        let (snapshot, now) = (timeline.snapshot(), display_s(&timeline));
-        told.extend(listener.pass(&snapshot, now).into_iter().map(|notice| match notice {
-            ContactNotice::Happened(event) => event,
-            ContactNotice::Retracted(event) => panic!("{event:?}"),
-        }));
-        let expected: Vec<ContactEvent> = (1..=timeline.display().0)
-            .flat_map(|frame| plain_events(&snapshot, Frame(frame), 20.0))
-            .collect();
-        assert_eq!(told, expected, "{scene}");
-        let true_now: BTreeSet<Key> = expected.iter().map(key).collect();
-        undone += foreseen.iter().filter(|k| k.0 <= timeline.display() && !true_now.contains(*k)).count();
-        assert!(told.len() > 5 && undone > 0, "{scene}: {} told, {undone} undone", told.len());
-    }
-}
-
-#[test]
-fn late_edits_are_let_be_in_balance() {
-    for (scene, bodies) in scenes::all() {
-        for seed in 20..24 {
-            let mut listener = ContactListener::default();
-            let mut touching: BTreeSet<(BodyId, BodyId)> = BTreeSet::new();
-            let mut last = Frame(0);
-            let (timeline, _) = session(&bodies, seed, SETTINGS, |timeline| {
-                for notice in listener.pass(&timeline.snapshot(), display_s(timeline)) {
-                    let ContactNotice::Happened(event) = notice else { panic!("{notice:?}") };
-                    assert!(event.frame >= last && event.frame <= timeline.display(), "{event:?}");
-                    last = event.frame;
-                    let pair = (event.touch.first, event.touch.second);
-                    let news = match event.kind {
-                        ContactKind::Begin => touching.insert(pair),
-                        ContactKind::End => touching.remove(&pair),
-                        ContactKind::Hit => false,
-                    };
-                    assert!(news, "{scene}, seed {seed}: {event:?}");
-                }
-            });
-            // One more frame settles what late edits left behind.
-            let mut timeline = timeline;
-            timeline.set_display(timeline.display().next());
-            run(&mut timeline);
-            let snapshot = timeline.snapshot();
-            for notice in listener.pass(&snapshot, display_s(&timeline)) {
-                let ContactNotice::Happened(event) = notice else { panic!("{notice:?}") };
-                let pair = (event.touch.first, event.touch.second);
-                let news = if event.kind == ContactKind::Begin {
-                    touching.insert(pair)
-                } else {
-                    touching.remove(&pair)
-                };
-                assert!(news);
-            }
-            let now = snapshot.contacts(timeline.display());
-            assert_eq!(
-                touching,
-                now.iter().map(|touch| (touch.first, touch.second)).collect(),
-                "{scene}, seed {seed}"
-            );
-        }
-    }
-}
-
-#[test]
-fn late_edits_are_corrected_where_that_is_asked_for() {
-    let mut retracted = 0;
-    for (scene, bodies) in scenes::all() {
-        for seed in 30..34 {
-            let listen = ListenerSettings { hit_impulse_min: 30.0, late_edits: LateEdits::Correct };
-            let mut listener = ContactListener::new(listen);
-            let mut told: BTreeSet<Key> = BTreeSet::new();
-            let settings = TimelineSettings { past: 1000, ..SETTINGS };
-            let (timeline, _) = session(&bodies, seed, settings, |timeline| {
-                for notice in listener.pass(&timeline.snapshot(), display_s(timeline)) {
-                    let news = match notice {
-                        ContactNotice::Happened(event) => told.insert(key(&event)),
-                        ContactNotice::Retracted(event) => told.remove(&key(&event)),
-                    };
-                    retracted += u32::from(matches!(notice, ContactNotice::Retracted(_)));
-                    assert!(news, "{scene}, seed {seed}: {notice:?}");
-                }
-            });
-            let snapshot = timeline.snapshot();
-            let expected: BTreeSet<Key> = (1..=timeline.display().0)
-                .flat_map(|frame| plain_events(&snapshot, Frame(frame), 30.0))
-                .map(|event| key(&event))
-                .collect();
-            assert_eq!(told, expected, "{scene}, seed {seed}");
-        }
-    }
-    assert!(retracted > 100, "{retracted}");
-}
-
-#[test]
-fn whoever_begins_to_listen_late_hears_what_touches() {
-    let bodies = scenes::piles();
-    let mut timeline = Timeline::new(&bodies, environment(0), SETTINGS).unwrap();
-    timeline.set_display(Frame(10));
-    run(&mut timeline);
-    let snapshot = timeline.snapshot();
-    let mut listener =
-        ContactListener::new(ListenerSettings { hit_impulse_min: 0.0, ..ListenerSettings::default() });
-    let first = listener.pass(&snapshot, 0.205);
-    let begins: Vec<Touch> = first
-        .iter()
-        .map(|notice| match notice {
-            ContactNotice::Happened(ContactEvent { frame: Frame(12), kind: ContactKind::Begin, touch }) => {
-                *touch
-            }
-            other => panic!("{other:?}"),
-        })
-        .collect();
-    assert_eq!(begins, snapshot.contacts(Frame(12)));
-    assert_eq!(begins.len(), 24);
-    assert_eq!(listener.pass(&snapshot, 0.205), []);
-    assert_eq!(listener.pass(&snapshot, 0.1), []);
-    assert_eq!(listener.pass(&snapshot, f64::NAN), []);
-    listener.restart();
-    assert_eq!(listener.pass(&snapshot, 0.205), first);
 }
 
 #[test]
@@ -425,4 +183,51 @@ fn a_body_that_is_taken_away_ends_its_touches() {
     let found: Vec<_> = events.iter().map(|event| (event.frame.0, event.kind, event.touch.first.0)).collect();
     // The step that leads to the frame of a command is done before it.
     assert_eq!(found, [(11, ContactKind::End, 0), (13, ContactKind::End, 1), (15, ContactKind::End, 1)]);
+}
+
+/// What recording costs: `cargo test --release -p forerun-timeline --test contacts cost -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+#[allow(
+    clippy::disallowed_types,
+    clippy::print_stdout,
+    reason = "a measurement has a clock and is read by people"
+)]
+fn cost_of_recording() {
+    let cube = Shape::cuboid(Vec3::splat(0.5)).unwrap();
+    let mut random = Random::new(4);
+    let mut bodies = vec![BodyDef::fixed(Shape::HalfSpace)];
+    for i in 0..1000_u32 {
+        let (column, row, level) = ((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32);
+        let place = Vec3::new(1.05 * column, 0.6 + 1.1 * level, 1.05 * row) + random.vector() * 0.3;
+        bodies.push(BodyDef::new(cube.clone()).at(place));
+    }
+    for record_contacts in [false, true, false, true] {
+        let settings = TimelineSettings { lookahead: 120, record_contacts, ..TimelineSettings::default() };
+        let mut timeline = Timeline::new(&bodies, Environment::default(), settings).unwrap();
+        let start = std::time::Instant::now();
+        run(&mut timeline);
+        let frame_ms = start.elapsed().as_secs_f64() * 1e3 / 120.0;
+        let snapshot = timeline.snapshot();
+        let touches: usize = (1..=120).map(|frame| snapshot.contacts(Frame(frame)).len()).sum();
+        let body_frames = 1000.0 * 121.0;
+        println!(
+            "recording {record_contacts}: {frame_ms:.2} ms a frame, {:.1} bytes a body and frame, {:.2} touches a body and frame",
+            timeline.state_bytes() as f64 / body_frames,
+            touches as f64 / body_frames,
+        );
+        let mut listener = ContactListener::default();
+        let (mut told, mut slowest) = (0, 0.0_f64);
+        let start = std::time::Instant::now();
+        for frame in 0..=120 {
+            let begin = std::time::Instant::now();
+            told += listener.pass(&snapshot, f64::from(frame) / 60.0 + 0.001).len();
+            slowest = slowest.max(begin.elapsed().as_secs_f64() * 1e6);
+        }
+        let pass_us = start.elapsed().as_secs_f64() * 1e6 / 121.0;
+        println!("    {told} told, {pass_us:.1} µs a picture, at most {slowest:.1} µs");
+        let start = std::time::Instant::now();
+        let events = snapshot.contact_events(0.0, 2.0).len();
+        println!("    {events} events of 2 s in {:.2} ms", start.elapsed().as_secs_f64() * 1e3);
+    }
 }

@@ -34,6 +34,10 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     print(&format!("\n{} of {figures} figures pass", figures - misses))?;
+    if args.cases.is_empty() {
+        let long: Vec<&str> = CASES.iter().filter(|case| case.long).map(|case| case.id).collect();
+        print(&format!("not run, as they take minutes: {}", long.join(", ")))?;
+    }
     if args.strict && misses > 0 {
         return Err(Failure::Check(format!("{misses} of {figures} figures miss their limit")));
     }

@@ -5,7 +5,7 @@
 //!
 //! Quiet is a body that rattles in its place. One that goes on its way, however slowly, is not, and nor is what it takes along.
 
-use forerun_geometry::{Quat, Vec3};
+use forerun_geometry::{Quat, Shape, Vec3};
 
 use super::islands::Islands;
 use crate::narrow_phase::Contact;
@@ -34,6 +34,10 @@ pub(crate) struct Ending {
 
 /// A body that goes on its way faster than this part of `rest_speed` is not quiet.
 const DRIFT_PART: f32 = 0.1;
+/// The same for balls and capsules: nothing in the step brakes their rolling, and slower than this what resists it in nature stops one within seconds.
+const ROLL_PART: f32 = 0.4;
+/// A body may turn so much faster than `rest_speed` while it is pushed out of overlaps on all sides, and a ball that others hold.
+const TURNS: f32 = 2.0;
 /// What goes on its way changes its velocity by less than this part of it in a frame: uniform acceleration does after eight frames.
 const UNSTEADY: f32 = 0.125;
 
@@ -126,6 +130,9 @@ fn counted(member: &Member, ending: &Ending, environment: &Environment) -> u32 {
     }
 }
 
+/// What moves with another at the point where they touch, but for this part, is taken along; and it may slow the other by as much.
+const FOLLOWS: f32 = 0.2;
+
 /// Bodies that one which goes on its way takes along where they touch.
 fn carried(
     members: &[Member],
@@ -134,15 +141,20 @@ fn carried(
     environment: &Environment,
 ) -> Vec<bool> {
     let drifting: Vec<bool> = (members.iter().zip(next))
-        .map(|(m, next)| m.body.is_dynamic() && drifts(m, next, environment))
+        .map(|(m, next)| m.body.is_dynamic() && drifts(m, next, environment, FOLLOWS))
         .collect();
+    let limit = DRIFT_PART * environment.settings.rest_speed;
+    let limit2 = limit * limit;
     let mut carried = vec![false; members.len()];
     for c in contacts.iter().filter(|c| c.manifold.deepest() < REST_TOUCH_M) {
         let point = c.manifold.points[0].position;
         for (mover, other) in [(c.first as usize, c.second as usize), (c.second as usize, c.first as usize)] {
             if drifting[mover] && members[other].body.is_dynamic() {
                 let (leads, follows) = (next[mover].velocity_at(point), next[other].velocity_at(point));
-                carried[other] |= (leads - follows).length_squared() < 0.25 * leads.length_squared();
+                // A ball that rolls stands still where it touches.
+                let speed2 = leads.length_squared();
+                let along = (leads - follows).length_squared() < FOLLOWS * FOLLOWS * speed2;
+                carried[other] |= along && speed2 > limit2;
             }
         }
     }
@@ -161,27 +173,32 @@ fn quiet(member: &Member, next: &BodyState, environment: &Environment) -> bool {
     let (shift, turn) = pace(member, next, environment);
     let r2 = member.body.radius * member.body.radius;
     let limit2 = environment.settings.rest_speed * environment.settings.rest_speed;
+    // A ball that others hold turns in its place, and that moves nothing.
+    let spin2 = if matches!(member.body.shape, Shape::Sphere(_)) { TURNS * TURNS * limit2 } else { limit2 };
     next.velocity.length_squared() < limit2
-        && next.angular_velocity.length_squared() * r2 < limit2
+        && next.angular_velocity.length_squared() * r2 < spin2
         && shift.length_squared() < limit2
-        && turn.length_squared() * r2 < limit2
-        && !drifts(member, next, environment)
+        && turn.length_squared() * r2 < TURNS * TURNS * limit2
+        && !drifts(member, next, environment, UNSTEADY)
 }
 
-/// Whether the body goes on its way: it moved as its velocity said before, and says still. What rattles does not.
-fn drifts(member: &Member, next: &BodyState, environment: &Environment) -> bool {
+/// Whether the body goes on its way: it moved as its velocity said before, and says still, but for this part. What rattles does not.
+fn drifts(member: &Member, next: &BodyState, environment: &Environment, unsteady: f32) -> bool {
     let (shift, turn) = pace(member, next, environment);
-    let limit = DRIFT_PART * environment.settings.rest_speed;
+    let ball = matches!(member.body.shape, Shape::Sphere(_));
+    let rolls = ball || matches!(member.body.shape, Shape::Capsule(_));
+    let limit = environment.settings.rest_speed * if rolls { ROLL_PART } else { DRIFT_PART };
     let steady = |moved: Vec3, before: Vec3, after: Vec3, limit: f32| {
         let moved2 = moved.length_squared();
-        let unsteady2 = UNSTEADY * UNSTEADY * moved2;
+        let unsteady2 = unsteady * unsteady * moved2;
         moved2 > limit * limit
             && (moved - before).length_squared() < unsteady2
             && (moved - after).length_squared() < unsteady2
     };
     let state = &member.state;
+    // The turning of a ball in its place moves nothing.
     steady(shift, state.velocity, next.velocity, limit)
-        || steady(turn, state.angular_velocity, next.angular_velocity, limit / member.body.radius)
+        || !ball && steady(turn, state.angular_velocity, next.angular_velocity, limit / member.body.radius)
 }
 
 /// Mean velocity and angular velocity over the frame, from the change of pose.

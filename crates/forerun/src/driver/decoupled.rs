@@ -124,6 +124,7 @@ impl Decoupled {
             command_capacity: capacity,
             count_areas: settings.count_areas,
             reach,
+            caught_up: true,
             pictures: 0,
             hinder,
             recorder: settings.recorder,

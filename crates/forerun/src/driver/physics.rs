@@ -64,7 +64,7 @@ impl Shared {
             notes: FrameNotes::with_capacity(notes_kept),
             panic: Mutex::new(None),
             dropped_to: AtomicU64::new(u64::MAX),
-            display: AtomicU64::new(0),
+            display: AtomicU64::new(timeline.display().0),
             pictures: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
             done: AtomicBool::new(false),
@@ -119,6 +119,8 @@ pub(super) struct Physics {
     pub(super) command_capacity: usize,
     pub(super) count_areas: bool,
     pub(super) reach: Reach,
+    /// Whether all was done at some moment since the last commands came.
+    pub(super) caught_up: bool,
     /// Pictures that the reach has grown for.
     pub(super) pictures: u64,
     pub(super) hinder: Hinder,
@@ -162,6 +164,7 @@ impl Physics {
                     self.publish();
                 }
                 Progress::Idle => {
+                    self.caught_up = true;
                     self.shared.done.store(true, Ordering::Relaxed);
                     std::thread::park();
                     self.shared.done.store(false, Ordering::Relaxed);
@@ -223,7 +226,10 @@ impl Physics {
             _ => {}
         }
         if changed {
-            self.reach.shorten();
+            // What is thrown away then was computed in time that nobody else wanted.
+            if !std::mem::take(&mut self.caught_up) {
+                self.reach.shorten();
+            }
             self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
             self.publish();
         }

@@ -109,22 +109,73 @@ fn a_local_change_acts_on_the_first_frame_after_the_displayed_one() {
 }
 
 #[test]
-fn a_long_drag_keeps_physics_from_computing_what_the_next_move_throws_away() {
+fn a_timeline_that_was_shown_before_goes_on_from_there() {
+    let mut timeline = timeline();
+    timeline.set_display(Frame(30));
+    let mut driver = Decoupled::start(timeline, settings()).expect("a thread");
+    assert!(eventually(|| full(&driver)));
+    let picture = driver.show(1000.0).expect("physics lives");
+    assert_eq!((picture.frame, picture.time_s), (Frame(30), 30.0 * FRAME_S));
+    assert_eq!(picture.snapshot.horizon(), Frame(30 + u64::from(LOOKAHEAD)));
+}
+
+#[test]
+fn the_queue_has_its_bound_whatever_the_display_does() {
     let mut driver = filled();
-    let valid_to = |driver: &Decoupled| driver.last_picture().snapshot.valid_to();
-    for move_number in 0..10_u8 {
-        let velocity = Vec3::X * f32::from(move_number + 1);
-        let body = BodyId(2);
-        driver.change(Change::SetVelocity { body, velocity, angular_velocity: Vec3::ZERO }).expect("room");
-        assert!(eventually(|| valid_to(&driver) < Frame(u64::from(LOOKAHEAD))), "move {move_number}");
-        driver.show(0.0).expect("physics lives");
+    let mut real_s = 0.0;
+    for (speed, pictures) in [(1.0, 20), (0.0, 20), (10.0, 40), (0.5, 20)] {
+        driver.set_speed(speed).expect("a possible speed");
+        for _ in 0..pictures {
+            real_s += FRAME_S;
+            let before = driver.last_picture().time_s;
+            let shown = driver.show(real_s).expect("physics lives");
+            assert!(shown.time_s >= before && shown.time_s <= before + 1.05 * speed * FRAME_S + 1e-9);
+            std::thread::sleep(Duration::from_millis(1));
+            let now = driver.last_picture();
+            assert!(now.snapshot.horizon() <= now.frame.plus(u64::from(LOOKAHEAD)), "{now:?}");
+        }
     }
-    std::thread::sleep(Duration::from_millis(20));
-    assert!(valid_to(&driver) < Frame(u64::from(LOOKAHEAD)), "{}", valid_to(&driver));
-    assert!(eventually(|| {
-        driver.show(0.0).expect("physics lives");
-        full(&driver)
-    }));
+}
+
+/// A drag of a body far from the others: a command at every picture, which physics hears of before the next. The fewest frames ahead.
+fn dragged(driver: &mut Decoupled, mut after: impl FnMut(&Decoupled)) -> u64 {
+    let mut fewest = u64::MAX;
+    for picture in 1..=60 {
+        let shown = driver.show(f64::from(picture) * FRAME_S).expect("physics lives");
+        fewest = fewest.min(shown.snapshot.horizon().since(shown.frame));
+        let others = shown.snapshot.sample(BodyId(1), shown.time_s).expect("the body is there");
+        assert!(others.certainty <= forerun_timeline::Certainty::Presumed, "picture {picture}: {others:?}");
+        let target = Vec3::new(30.0, 5.0 + 0.05 * f64::from(picture) as f32, 0.0);
+        let spring =
+            crate::dynamics::Spring { anchor: Vec3::ZERO, target, frequency_hz: 5.0, damping_ratio: 1.0 };
+        driver.change(Change::Hold { body: BodyId(2), spring }).expect("room");
+        after(driver);
+    }
+    fewest
+}
+
+#[test]
+fn a_cheap_drag_leaves_the_queue_full() {
+    let mut driver = filled();
+    let fewest = dragged(&mut driver, |driver| assert!(eventually(|| full(driver))));
+    assert!(fewest >= u64::from(LOOKAHEAD) - 1, "{fewest}");
+    let picture = driver.last_picture();
+    let held = picture.snapshot.sample(BodyId(2), picture.time_s).expect("it is there");
+    assert!(held.certainty == forerun_timeline::Certainty::Exact && held.pose.position.y > 6.0, "{held:?}");
+}
+
+#[test]
+fn a_costly_drag_keeps_physics_from_computing_what_the_next_move_throws_away() {
+    // Two milliseconds a frame: eight or so from one picture to the next, and not twenty.
+    let mut driver = slow(2);
+    driver.show(0.0).expect("physics lives");
+    assert!(eventually(|| full(&driver)));
+    let before = driver.last_picture().stats;
+    dragged(&mut driver, |_| std::thread::sleep(Duration::from_millis(16)));
+    let after = driver.last_picture().stats;
+    let again = after.edits.frames - before.edits.frames;
+    assert!(again < 60 * u64::from(LOOKAHEAD) * 3 / 4, "{again} frames for 60 pictures");
+    assert!(driver.last_picture().snapshot.horizon() > driver.last_picture().frame);
 }
 
 #[test]
