@@ -368,7 +368,6 @@ fn what_is_no_recording_is_told_by_name() {
     assert_eq!(told(&newer), expected);
     let missing = load_timeline(temporary.0.join("none")).expect_err("there is no such file");
     assert!(missing.to_string().contains("No such file"), "{missing}");
-    // What is at the place stays when it cannot be replaced.
     let recording = Recording::decode(good).expect("it is whole");
     assert!(recording.write(temporary.0.join("no/such/folder")).is_err());
     std::fs::write(&path, good).expect("a place to write");
