@@ -126,9 +126,10 @@ impl Decoder {
     fn take(&mut self, record: Record) -> Result<(), String> {
         match record {
             Record::Start(value) => {
-                if self.building.is_some() {
+                if self.building.as_ref().is_some_and(|building| building.names.len() != self.names) {
                     return Err("begins again before it is complete".to_owned());
                 }
+                self.complete();
                 self.names = value.names as usize;
                 self.building = Some(start_of(value));
                 (self.part, self.last) = (Part::Start, None);
@@ -194,8 +195,7 @@ impl Decoder {
 
     /// The timeline that is being read is complete, if it has all its names.
     fn complete(&mut self) {
-        let names = self.names;
-        match self.building.take().filter(|building| building.names.len() == names) {
+        match self.building.take().filter(|building| building.names.len() == self.names) {
             Some(first) if self.start.is_none() => self.start = Some(first),
             Some(next) => self.events.push(Event::Restart(Box::new(next))),
             None => {}

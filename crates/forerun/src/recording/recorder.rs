@@ -67,6 +67,8 @@ impl Recorder {
         let mut writing = self.writing();
         writing.known = known(timeline);
         writing.record(|encoder, bytes| encoder.start(&parts, bytes));
+        // What follows it says that it is complete.
+        writing.mark(timeline);
     }
 
     /// Records what the timeline is now: a replay compares.
