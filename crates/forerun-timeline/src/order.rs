@@ -71,12 +71,18 @@ impl Timeline {
     /// Takes back the local user's last order, also one in the past; the key of its command.
     ///
     /// # Errors
-    /// [`CommandError::NothingToUndo`]: none is left whose frame is still kept.
+    /// [`CommandError::NothingToUndo`]: none is left whose frame is still kept. When it cannot be done for another reason, that; then
+    /// nothing changed.
     pub fn undo(&mut self) -> Result<CommandKey, CommandError> {
-        let order = self.undo.undo.pop().ok_or(CommandError::NothingToUndo)?;
-        let (key, inverse) = self.perform_known(order)?;
-        self.undo.redo.push(inverse);
-        Ok(key)
+        while let Some(order) = self.undo.undo.last().cloned() {
+            if let Some((key, inverse)) = self.perform_known(order)? {
+                self.undo.redo.push(inverse);
+                self.undo.undo.pop();
+                return Ok(key);
+            }
+            self.undo.undo.pop();
+        }
+        Err(CommandError::NothingToUndo)
     }
 
     /// Does again what was undone last; the key of its command.
@@ -84,15 +90,26 @@ impl Timeline {
     /// # Errors
     /// [`CommandError::NothingToRedo`]: nothing was undone since the local user's last order.
     pub fn redo(&mut self) -> Result<CommandKey, CommandError> {
-        let order = self.undo.redo.pop().ok_or(CommandError::NothingToRedo)?;
-        let (key, inverse) = self.perform_known(order)?;
-        self.undo.undo.push(inverse);
-        Ok(key)
+        while let Some(order) = self.undo.redo.last().cloned() {
+            if let Some((key, inverse)) = self.perform_known(order)? {
+                self.undo.undo.push(inverse);
+                self.undo.redo.pop();
+                return Ok(key);
+            }
+            self.undo.redo.pop();
+        }
+        Err(CommandError::NothingToRedo)
     }
 
-    fn perform_known(&mut self, order: Order) -> Result<(CommandKey, Order), CommandError> {
-        let key = order.key().ok_or(CommandError::NothingToUndo)?;
-        Ok((key, self.perform(order)?))
+    /// Performs a remembered order: the key of its command, and the order that takes it back. `None` when the command was taken away by
+    /// other means than an order, so that there is nothing left to do.
+    fn perform_known(&mut self, order: Order) -> Result<Option<(CommandKey, Order)>, CommandError> {
+        let Some(key) = order.key() else { return Ok(None) };
+        match self.perform(order) {
+            Ok(inverse) => Ok(Some((key, inverse))),
+            Err(CommandError::UnknownCommand(_) | CommandError::DuplicateKey(_)) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// Does what an order says about one command; the order that takes it back.

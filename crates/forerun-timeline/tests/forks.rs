@@ -174,3 +174,17 @@ fn a_replacement_that_is_refused_leaves_the_command() {
     let parted = timeline.diff(&before).unwrap();
     assert_eq!((parted.frame, parted.bodies), (Frame(5), vec![BodyId(3), BodyId(4), body]));
 }
+
+#[test]
+fn what_was_taken_away_by_other_means_is_passed_over_by_undo() {
+    let mut timeline = timeline();
+    let before = timeline.clone();
+    let first = timeline.change(Frame(12), push(4, 2000.0)).unwrap();
+    let second = timeline.change(Frame(13), push(8, 2000.0)).unwrap();
+    assert!(timeline.retract(&second));
+    assert_eq!(timeline.undo(), Ok(first));
+    run(&mut timeline);
+    assert_eq!(mismatches(&timeline, &before), (0, None));
+    assert_eq!(timeline.undo(), Err(CommandError::NothingToUndo));
+    assert_eq!(timeline.redo(), Ok(first));
+}
