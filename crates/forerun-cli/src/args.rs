@@ -20,6 +20,8 @@ pub(crate) enum Command {
     View(ViewArgs),
     /// Play a scene against the clock; write queue.csv, report.json and charts
     Run(RunArgs),
+    /// Compute a recording again and compare it with its hashes, or save what can be read of a damaged one
+    Replay(ReplayArgs),
     /// Repeat an experiment of the dissertation, decoupled beside coupled
     Experiment(ExperimentArgs),
     /// List the built-in scenes, or print one as a file
@@ -30,6 +32,8 @@ pub(crate) enum Command {
     Bench(BenchArgs),
     /// Compare with formulas and measurements from the literature
     Validate(ValidateArgs),
+    /// Show a scene for minutes while it is edited and its physics stalls; watch the display, memory and every bit
+    Soak(SoakArgs),
     /// Write a simulation as an animated glTF file
     Bake(BakeArgs),
 }
@@ -74,7 +78,25 @@ pub(crate) struct RunArgs {
     /// Folder for queue.csv, report.json and charts
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
+    /// File to record the session in, for `forerun replay`
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
     /// Print the report as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArgs {
+    /// A file that `forerun run SCENE --record FILE` or `save_timeline` wrote
+    pub(crate) file: PathBuf,
+    /// Threads of the physics [default: one per core]
+    #[arg(long, value_parser = threads(), conflicts_with = "recover")]
+    pub(crate) threads: Option<u16>,
+    /// Do not replay: write the part of FILE that can be read to this file
+    #[arg(long, value_name = "OUT")]
+    pub(crate) recover: Option<PathBuf>,
+    /// Print the result as JSON and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -126,6 +148,15 @@ pub(crate) struct CheckArgs {
     /// Frames that are kept and compared
     #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) frames: u32,
+    /// Frames that pass before the first edit, so that the scene can come to rest
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub(crate) settle: u32,
+    /// Frames that the display moves on after each edit
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    pub(crate) display_step: u32,
+    /// Edits after which the reference computes, and everything is compared: more take less time
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) compare_every: u32,
     /// Thread counts to compare, like 1,2,4
     #[arg(long, value_delimiter = ',', default_value = "1,2", value_parser = threads())]
     pub(crate) threads: Vec<u16>,
@@ -154,7 +185,7 @@ pub(crate) struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ValidateArgs {
-    /// Cases to run [default: all]
+    /// Cases to run [default: all but those that take minutes]
     pub(crate) cases: Vec<String>,
     /// Exit with code 1 when a figure misses its limit
     #[arg(long)]
@@ -173,6 +204,51 @@ pub(crate) struct BakeArgs {
     pub(crate) seconds: f64,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct SoakArgs {
+    #[arg(default_value = "islands:10", help = SCENE_HELP)]
+    pub(crate) scene: String,
+    /// Length in seconds of real time
+    #[arg(long, default_value = "600", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) seconds: f64,
+    /// Pictures per second
+    #[arg(long, default_value = "60", value_parser = fps, allow_negative_numbers = true)]
+    pub(crate) fps: f64,
+    /// Random edits per second
+    #[arg(long, default_value = "2", value_parser = rate, allow_negative_numbers = true)]
+    pub(crate) edits_per_second: f64,
+    /// Drag a body all the time, with a command at every picture
+    #[arg(long)]
+    pub(crate) drag: bool,
+    /// Longest stall of the physics in seconds, 0 for none
+    #[arg(long, default_value = "2", value_parser = rate, allow_negative_numbers = true)]
+    pub(crate) stall: f64,
+    /// Seconds from one stall to the next, in the mean
+    #[arg(long, default_value = "15", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) stall_every: f64,
+    /// Milliseconds that every computed frame takes longer
+    #[arg(long, default_value = "0", value_parser = milliseconds, allow_negative_numbers = true)]
+    pub(crate) slow_ms: f64,
+    /// Most frames that physics is ahead of the display
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) lookahead: u32,
+    /// Frames that are ahead before the first picture
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    pub(crate) prefill: u32,
+    /// Threads beside it that only keep processors busy
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    pub(crate) hogs: u16,
+    /// Threads of the physics [default: one per core]
+    #[arg(long, value_parser = threads())]
+    pub(crate) threads: Option<u16>,
+    /// Seed of edits and stalls
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Print the result as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
 fn threads() -> clap::builder::RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=256)
 }
@@ -183,6 +259,14 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 fn fps(text: &str) -> Result<f64, String> {
     number_in(text, 1.0, 1000.0)
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    number_in(text, 0.0, 1000.0)
+}
+
+fn milliseconds(text: &str) -> Result<f64, String> {
+    number_in(text, 0.0, 10_000.0)
 }
 
 fn number_in(text: &str, min: f64, max: f64) -> Result<f64, String> {

@@ -71,4 +71,11 @@ macro_rules! input_failure {
     };
 }
 
-input_failure!(forerun::PlaybackError, forerun::SceneError, forerun::StagingError, forerun::ThreadsError);
+input_failure!(
+    forerun::DriverError,
+    forerun::PlaybackError,
+    forerun::RecordingError,
+    forerun::SceneError,
+    forerun::StagingError,
+    forerun::ThreadsError
+);

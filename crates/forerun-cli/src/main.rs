@@ -12,6 +12,7 @@ mod figures;
 mod output;
 mod progress;
 mod results;
+mod soak;
 mod stats;
 mod validate;
 
@@ -39,11 +40,13 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => commands::run::main_job(),
         Some(Command::Run(args)) => commands::run::run(&args),
+        Some(Command::Replay(args)) => commands::replay::run(&args),
         Some(Command::Experiment(args)) => commands::experiment::run(&args),
         Some(Command::Scenes(args)) => commands::scenes::run(&args),
         Some(Command::Check(args)) => commands::check::run(&args),
         Some(Command::Bench(args)) => commands::bench::run(&args),
         Some(Command::Validate(args)) => commands::validate::run(&args),
+        Some(Command::Soak(args)) => commands::soak::run(&args),
         Some(Command::View(_)) => Err(Failure::not_there_yet("view")),
         Some(Command::Bake(_)) => Err(Failure::not_there_yet("bake")),
     }

@@ -84,6 +84,7 @@ fn run_writes_a_row_per_picture_a_report_and_charts() {
         "longest_stall_ms",
         "delay_max_s",
         "queue_min",
+        "queue_low",
         "queue_max",
         "slices_max",
         "recomputed",
@@ -142,6 +143,16 @@ fn check_finds_no_difference_and_says_what_it_compared() {
         assert!(verdict[times][part].is_f64(), "{times}.{part}");
     }
     assert!(verdict["recomputed"].as_u64() <= verdict["full"].as_u64());
+}
+
+#[test]
+fn check_says_in_words_what_it_found_and_how_to_do_it_again() {
+    let options = ["--settle", "20", "--display-step", "2", "--compare-every", "3"];
+    let usual = ["check", "stack:3", "--edits", "7", "--frames", "30", "--threads", "1"];
+    let words = text(&forerun(&[&usual[..], &options[..]].concat()).stdout);
+    assert!(words.contains("--settle 20 --display-step 2 --compare-every 3"), "{words}");
+    assert!(words.contains("every state of every body has the bits of a full run"), "{words}");
+    assert!(words.contains("times cheaper than a full re-simulation"), "{words}");
 }
 
 #[test]

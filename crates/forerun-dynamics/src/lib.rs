@@ -11,6 +11,7 @@ pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
 mod lanes;
+pub mod meter;
 pub mod narrow_phase;
 mod plan;
 pub mod settings;
@@ -18,6 +19,7 @@ mod solver;
 pub mod stage;
 pub mod state;
 pub mod step;
+pub mod touch;
 pub mod world;
 
 pub use body::{Body, BodyId, BodyKind, Material, Spring};
@@ -26,4 +28,5 @@ pub use settings::{Environment, EnvironmentError, ShockPropagation, StepSettings
 pub use stage::{Observer, Stage, Unobserved};
 pub use state::BodyState;
 pub use step::{Group, Member, StepReport};
+pub use touch::{Touch, Touches};
 pub use world::World;

@@ -7,7 +7,8 @@ use crate::bounds::swept_bound;
 use crate::narrow_phase::{Contact, find_contacts};
 use crate::plan::{Island, Plan, half_thickness, pack};
 use crate::solver::{Batch, fly, rest_after_slices};
-use crate::{Body, BodyId, BodyKind, BodyState, Environment, Observer, Stage};
+use crate::touch::Ledger;
+use crate::{Body, BodyId, BodyKind, BodyState, Environment, Observer, Stage, Touches};
 
 /// An overlap that grows by less than this is never too deep. Metres.
 const DEEP_M: f32 = 0.001;
@@ -69,7 +70,28 @@ pub fn advance(
     environment: &Environment,
     observer: &mut dyn Observer,
 ) -> (Vec<BodyState>, StepReport) {
+    advance_islands(group, environment, observer, None)
+}
+
+/// As [`advance`], with the same bits, and tells who touched whom. Replaces what `touches` held.
+pub fn advance_touching(
+    group: &Group,
+    environment: &Environment,
+    observer: &mut dyn Observer,
+    touches: &mut Touches,
+) -> (Vec<BodyState>, StepReport) {
+    advance_islands(group, environment, observer, Some(touches))
+}
+
+/// As [`advance`]; tells who touched whom where somebody asks.
+pub(crate) fn advance_islands(
+    group: &Group,
+    environment: &Environment,
+    observer: &mut dyn Observer,
+    touches: Option<&mut Touches>,
+) -> (Vec<BodyState>, StepReport) {
     let plan = Plan::new(group, environment);
+    let mut ledger = touches.is_some().then(Ledger::default);
     let mut next: Vec<BodyState> = group.members.iter().map(|m| m.state).collect();
     let dt = environment.settings.frame_seconds;
     for (i, member) in group.members.iter().enumerate() {
@@ -89,8 +111,12 @@ pub fn advance(
         let chosen: Vec<u32> = (0..slices.len() as u32).filter(|&i| slices[i as usize] == count).collect();
         if !chosen.is_empty() {
             report.slices_max = count;
-            let too_deep =
-                Slicer { group, environment, plan: &plan, count }.run(&chosen, &mut next, observer);
+            let mut notes = ledger.is_some().then(Ledger::default);
+            let slicer = Slicer { group, environment, plan: &plan, count };
+            let too_deep = slicer.run(&chosen, &mut next, observer, &mut notes);
+            if let (Some(ledger), Some(notes)) = (&mut ledger, notes) {
+                ledger.keep(notes, &too_deep);
+            }
             // The return in time: the frame of these islands is thrown away and done again in smaller parts.
             for i in too_deep {
                 slices[i as usize] = count * 2;
@@ -99,6 +125,9 @@ pub fn advance(
         count *= 2;
     }
     report.quarantined = quarantine(group, &mut next);
+    if let (Some(touches), Some(ledger)) = (touches, ledger) {
+        *touches = Touches { list: ledger.touches(), resting: plan.resting };
+    }
     (next, report)
 }
 
@@ -131,15 +160,25 @@ struct Slicer<'a> {
 
 impl<'a> Slicer<'a> {
     /// Writes the next states of the chosen islands, and names those that ended too deep and may still be cut finer.
-    fn run(&self, chosen: &[u32], next: &mut [BodyState], observer: &mut dyn Observer) -> Vec<u32> {
+    fn run(
+        &self,
+        chosen: &[u32],
+        next: &mut [BodyState],
+        observer: &mut dyn Observer,
+        notes: &mut Option<Ledger>,
+    ) -> Vec<u32> {
         let mut environment = *self.environment;
         environment.settings.frame_seconds /= self.count as f32;
         let packed = pack(&self.plan.islands, chosen);
         let mut too_deep = Vec::new();
         if self.count == 1 {
             let mut batches: Vec<Batch> = packed.iter().map(|b| self.batch(b, environment)).collect();
+            if notes.is_some() {
+                batches.iter_mut().for_each(Batch::record_impulses);
+            }
             let solved = solve(&mut batches, observer);
             for ((batch, islands), states) in batches.iter().zip(&packed).zip(solved) {
+                self.note(batch, notes);
                 self.keep(batch, &states, next);
                 self.find_too_deep(batch, islands, &mut too_deep);
             }
@@ -157,11 +196,15 @@ impl<'a> Slicer<'a> {
             let mut batches: Vec<Batch> = (members.iter().zip(&packed))
                 .map(|(m, islands)| self.detect(m, islands, &pairs, environment))
                 .collect();
+            if notes.is_some() {
+                batches.iter_mut().for_each(Batch::record_impulses);
+            }
             observer.after(Stage::Collisions);
             let solved = solve(&mut batches, observer);
             for (((members, islands), reach), (batch, states)) in
                 members.iter_mut().zip(&packed).zip(&reach).zip(batches.iter().zip(solved))
             {
+                self.note(batch, notes);
                 for ((member, state), reach) in members.iter_mut().zip(&states).zip(reach) {
                     // Rest is counted in whole frames: at the end.
                     member.state = within(member.body, BodyState { rest: 0, ..*state }, reach);
@@ -254,6 +297,21 @@ impl<'a> Slicer<'a> {
         }
     }
 
+    /// The island of a contact between two bodies of a batch.
+    fn island_of(&self, a: &Member, b: &Member) -> u32 {
+        let dynamic = if a.body.is_dynamic() { a.id } else { b.id };
+        let at = self.group.members.partition_point(|m| m.id < dynamic);
+        self.plan.island_of[at]
+    }
+
+    /// Notes what the contacts of a solved batch did, where that is asked for.
+    fn note(&self, batch: &Batch, notes: &mut Option<Ledger>) {
+        if let Some(notes) = notes {
+            let member = |i: u32| &batch.members[i as usize];
+            notes.note(batch, |contact| self.island_of(member(contact.first), member(contact.second)));
+        }
+    }
+
     fn find_too_deep(&self, batch: &Batch, islands: &[u32], too_deep: &mut Vec<u32>) {
         if self.environment.settings.slices_max <= self.count {
             return;
@@ -262,9 +320,7 @@ impl<'a> Slicer<'a> {
         for (contact, growth) in batch.contacts.iter().zip(batch.overlap_growth()) {
             let (a, b) = (&batch.members[contact.first as usize], &batch.members[contact.second as usize]);
             if growth > (part * half_thickness(a, b)).max(DEEP_M) {
-                let dynamic = if a.body.is_dynamic() { a.id } else { b.id };
-                let at = self.group.members.partition_point(|m| m.id < dynamic);
-                let island = self.plan.island_of[at];
+                let island = self.island_of(a, b);
                 debug_assert!(islands.contains(&island));
                 too_deep.push(island);
             }

@@ -2,8 +2,10 @@
 
 use crate::broad_phase::{Bound, overlapping_pairs};
 use crate::narrow_phase::find_contacts;
-use crate::step::{Group, Member, StepReport, advance};
-use crate::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, bounds};
+use crate::step::{Group, Member, StepReport, advance_islands};
+use crate::{
+    Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches, bounds,
+};
 
 /// Bodies at one frame.
 #[derive(Clone, Debug, Default)]
@@ -56,6 +58,23 @@ impl World {
 
     /// Goes on by one frame; stands still, with an empty report, in an environment that is not possible.
     pub fn step(&mut self, observer: &mut dyn Observer) -> StepReport {
+        self.advance(observer, None)
+    }
+
+    /// As [`World::step`], with the same bits, and tells who touched whom during the frame. `touches` is what the step before told (at
+    /// first: the default), as bodies at rest are not looked at again.
+    pub fn step_touching(&mut self, observer: &mut dyn Observer, touches: &mut Touches) -> StepReport {
+        let before = std::mem::take(touches);
+        let report = self.advance(observer, Some(touches));
+        let rests = |id: BodyId| touches.resting.get(id.0 as usize).is_some_and(|resting| *resting);
+        let stayed: Vec<Touch> =
+            before.list.into_iter().filter(|touch| rests(touch.first) || rests(touch.second)).collect();
+        touches.list.extend(stayed);
+        touches.list.sort_by_key(|touch| (touch.first, touch.second));
+        report
+    }
+
+    fn advance(&mut self, observer: &mut dyn Observer, touches: Option<&mut Touches>) -> StepReport {
         if self.environment.check().is_err() {
             return StepReport::default();
         }
@@ -73,7 +92,7 @@ impl World {
         let contacts = find_contacts(&members, &pairs, &self.environment);
         observer.after(Stage::Collisions);
         let group = Group { members: &members, pairs: &pairs, contacts: &contacts };
-        let (next, report) = advance(&group, &self.environment, observer);
+        let (next, report) = advance_islands(&group, &self.environment, observer, touches);
         self.states = next;
         report
     }

@@ -6,6 +6,7 @@ use forerun_dynamics::{BodyId, bounds};
 use forerun_geometry::{Aabb, Vec3};
 
 use crate::areas::Area;
+use crate::snapshot::Doubt;
 use crate::{Frame, Timeline};
 
 impl Timeline {
@@ -14,7 +15,7 @@ impl Timeline {
     #[must_use]
     pub fn area_clocks(&self) -> Vec<(Area, Frame)> {
         let mut clocks: BTreeMap<Area, Frame> = BTreeMap::new();
-        for (body, frame) in self.doubtful() {
+        for Doubt { body, known_to: frame, .. } in self.doubtful() {
             for area in self.bound(body, frame).into_iter().flat_map(|bound| self.areas.covered(&bound)) {
                 let clock = clocks.entry(area).or_insert(frame);
                 *clock = frame.min(*clock);
@@ -24,20 +25,17 @@ impl Timeline {
     }
 
     /// How many areas are active at a stored frame: a body that moved to where it is since the frame before is in them. 0 when the
-    /// frame is not stored. Bodies over a great many areas are left out.
+    /// frame is not stored. Bodies over a great many areas are left out. Costs in proportion to the bodies that moved.
     #[must_use]
     pub fn areas_active(&self, frame: Frame) -> u32 {
         if frame < self.oldest() || frame > self.horizon() {
             return 0;
         }
-        let mut moving = vec![false; self.names()];
-        for body in self.moving(frame) {
-            moving[body.0 as usize] = true;
-        }
-        self.areas.count(frame, |body, area| {
-            moving[body.0 as usize]
-                && self.bound(body, frame).is_some_and(|bound| self.areas.covers(&bound, area))
-        })
+        let bounds = self.moving(frame).into_iter().filter_map(|body| self.bound(body, frame));
+        let mut areas: Vec<Area> = bounds.flat_map(|bound| self.areas.covered(&bound)).collect();
+        areas.sort_unstable();
+        areas.dedup();
+        areas.len() as u32
     }
 
     /// The bodies whose state is not that of the frame before; at the oldest frame, that have a velocity.

@@ -59,6 +59,8 @@ pub enum Mutation {
     NoNewcomers,
     /// A body that a command woke before it was changed sleeps or wakes on as it did.
     NoWaking,
+    /// Pairs and contacts reach the step in the order in which they were found.
+    Unsorted,
     /// States that differ less than this (m, m/s) are taken to be equal.
     Tolerance(f32),
 }
@@ -100,10 +102,17 @@ impl Met<'_> {
 }
 
 /// Index by body into what was met. Kept between steps, so that a small step costs nothing for the others.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Scratch {
     /// Index plus 1; 0 is not met.
     met_index: Vec<u32>,
+}
+
+impl Clone for Scratch {
+    /// An empty one: between steps there is nothing in it, and a fork is not to pay for its size.
+    fn clone(&self) -> Scratch {
+        Scratch::default()
+    }
 }
 
 /// Finds the group that follows from `out_of_date` (sorted).
@@ -337,13 +346,18 @@ impl<'a> Search<'a, '_> {
             (*a, *b) = (placed(*a), placed(*b));
             *a != u32::MAX && *b != u32::MAX
         });
-        self.pairs.sort();
+        let sorted = self.inputs.mutation != Mutation::Unsorted;
+        if sorted {
+            self.pairs.sort();
+        }
         self.contacts.retain_mut(|contact| {
             (contact.first, contact.second) = (placed(contact.first), placed(contact.second));
             contact.first != u32::MAX && contact.second != u32::MAX
         });
         // Several manifolds of a pair stay in their order.
-        self.contacts.sort_by_key(|contact| (contact.first, contact.second));
+        if sorted {
+            self.contacts.sort_by_key(|contact| (contact.first, contact.second));
+        }
         for met in &self.met {
             self.scratch.met_index[met.member.id.0 as usize] = 0;
         }

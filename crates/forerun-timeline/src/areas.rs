@@ -5,11 +5,13 @@
 //! asked bounds. It may name more: whoever asks compares bounds.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use forerun_dynamics::BodyId;
 use forerun_geometry::{Aabb, Vec3};
 
 use crate::Frame;
+use crate::shared_list::SharedList;
 
 /// A cell of the grid: its lowest corner divided by the edge of an area.
 pub type Area = [i32; 3];
@@ -20,8 +22,14 @@ const AREAS_MAX: i64 = 64;
 /// Areas beyond this are one: farther than 2^24 edges an f32 has no finer position anyway.
 const AREA_LIMIT: f32 = 16_777_216.0;
 
-/// Past visits are forgotten once in so many frames: a pass over all of them is not worth it for each.
-const FORGET_EVERY: u64 = 32;
+/// Areas are kept in so many parts, which copies share until they are written to.
+const PARTS: usize = 256;
+
+/// Areas whose coordinates differ only in so many low bits are in one part: neighbours are, mostly.
+const PART_BITS: u32 = 2;
+
+/// Past visits are forgotten in so many parts at a time: a pass over all of them is not worth it for each frame.
+const PARTS_FORGOTTEN: usize = 8;
 
 /// The end of a visit that goes on until told otherwise.
 const OPEN: Frame = Frame(u64::MAX);
@@ -54,22 +62,28 @@ pub(crate) enum Until {
     NextFrame,
 }
 
-/// All areas with a visitor.
+/// Areas with their visitors, sorted by body.
+type Visits = BTreeMap<Area, Vec<Visit>>;
+
+/// All areas with a visitor. A copy shares what neither side has written since.
 #[derive(Clone, Debug)]
 pub(crate) struct Areas {
     edge_m: f32,
-    visits: BTreeMap<Area, Vec<Visit>>,
+    /// By [`part_of`] an area.
+    parts: Vec<Arc<Visits>>,
     /// Bodies over more than [`AREAS_MAX`] areas, sorted by body.
     large: Vec<Visit>,
     /// By body: what it covers at the last frame.
-    last: Vec<Option<Cover>>,
-    forgotten_to: Frame,
+    last: SharedList<Option<Cover>>,
+    /// The part whose past is forgotten next.
+    next_forgotten: usize,
 }
 
 impl Areas {
     /// No visitors. The edge of an area is in metres, above 0.
     pub(crate) fn new(edge_m: f32) -> Areas {
-        Areas { edge_m, visits: BTreeMap::new(), large: Vec::new(), last: Vec::new(), forgotten_to: Frame(0) }
+        let parts = (0..PARTS).map(|_| Arc::default()).collect();
+        Areas { edge_m, parts, large: Vec::new(), last: SharedList::default(), next_forgotten: 0 }
     }
 
     /// A body has this bound at a frame; `None` when it is not there.
@@ -82,13 +96,12 @@ impl Areas {
             return;
         }
         let index = body.0 as usize;
-        if self.last.len() <= index {
-            self.last.resize(index + 1, None);
-        }
-        if self.last[index] == cover {
+        self.last.grow(index + 1, &None);
+        if self.last.get(index) == Some(&cover) {
             return;
         }
-        if let Some(old) = std::mem::replace(&mut self.last[index], cover) {
+        let last = self.last.get_mut(index);
+        if let Some(old) = last.and_then(|last| std::mem::replace(last, cover)) {
             self.for_each_list(old, |list| close(list, body, frame));
         }
         if let Some(new) = cover {
@@ -108,26 +121,11 @@ impl Areas {
         areas.sort_unstable();
         areas.dedup();
         let here = |v: &&Visit| v.enters <= frame && frame < v.leaves;
-        for list in areas.iter().filter_map(|area| self.visits.get(area)) {
+        for list in areas.iter().filter_map(|area| self.parts[part_of(area)].get(area)) {
             found.extend(list.iter().filter(here).map(|v| v.body));
         }
         found.extend(self.large.iter().filter(here).map(|v| v.body));
         true
-    }
-
-    /// How many areas have a visitor at a frame for which `counts` holds; it is asked until it does.
-    pub(crate) fn count(&self, frame: Frame, counts: impl Fn(BodyId, &Area) -> bool) -> u32 {
-        let here = |v: &&Visit| v.enters <= frame && frame < v.leaves;
-        let areas = self.visits.iter();
-        areas.filter(|(area, list)| list.iter().filter(here).any(|v| counts(v.body, area))).count() as u32
-    }
-
-    /// Whether a bound covers an area, and not too many others to list.
-    pub(crate) fn covers(&self, bound: &Aabb, area: &Area) -> bool {
-        match self.cover(bound) {
-            Cover::Areas { min, max } => (0..3).all(|axis| (min[axis]..=max[axis]).contains(&area[axis])),
-            Cover::Large => false,
-        }
     }
 
     /// The areas that a bound covers; none when they are too many to list.
@@ -139,16 +137,19 @@ impl Areas {
         corners.into_iter().flat_map(|(min, max)| areas_between(min, max))
     }
 
-    /// Forgets, now and then, the visits that ended by `oldest`.
+    /// Forgets, bit by bit, the visits that ended by `oldest`.
     pub(crate) fn forget_before(&mut self, oldest: Frame) {
-        if oldest.since(self.forgotten_to) < FORGET_EVERY {
-            return;
+        for _ in 0..PARTS_FORGOTTEN {
+            let part = &mut self.parts[self.next_forgotten];
+            self.next_forgotten = (self.next_forgotten + 1) % PARTS;
+            // A part that is written to is no longer shared: only where there is something to forget.
+            if part.values().flatten().any(|visit| visit.leaves <= oldest) {
+                Arc::make_mut(part).retain(|_, list| {
+                    list.retain(|v| v.leaves > oldest);
+                    !list.is_empty()
+                });
+            }
         }
-        self.forgotten_to = oldest;
-        self.visits.retain(|_, list| {
-            list.retain(|v| v.leaves > oldest);
-            !list.is_empty()
-        });
         self.large.retain(|v| v.leaves > oldest);
     }
 
@@ -173,11 +174,18 @@ impl Areas {
             Cover::Large => act(&mut self.large),
             Cover::Areas { min, max } => {
                 for area in areas_between(min, max) {
-                    act(self.visits.entry(area).or_default());
+                    act(Arc::make_mut(&mut self.parts[part_of(&area)]).entry(area).or_default());
                 }
             }
         }
     }
+}
+
+/// Which part an area is in: neighbours together, distant ones spread evenly (multiplicative hashing, Knuth, TAOCP 3, 6.4).
+fn part_of(area: &Area) -> usize {
+    let spread = |coordinate: i32, factor: u32| ((coordinate >> PART_BITS) as u32).wrapping_mul(factor);
+    let mixed = spread(area[0], 0x9e37_79b1) ^ spread(area[1], 0x85eb_ca77) ^ spread(area[2], 0xc2b2_ae3d);
+    (mixed >> 24) as usize % PARTS
 }
 
 fn areas_between(min: Area, max: Area) -> impl Iterator<Item = Area> {
@@ -253,8 +261,10 @@ mod tests {
         let mut areas = Areas::new(1.0);
         areas.visit(BodyId(1), Frame(0), Some(&ball(0.5)), Until::FurtherNotice);
         areas.visit(BodyId(1), Frame(1), Some(&ball(9.5)), Until::FurtherNotice);
-        areas.forget_before(Frame(1000));
-        assert_eq!(areas.visits.len(), 1);
+        for _ in 0..PARTS / PARTS_FORGOTTEN {
+            areas.forget_before(Frame(1000));
+        }
+        assert_eq!(areas.parts.iter().map(|part| part.len()).sum::<usize>(), 1);
         assert_eq!(near(&areas, 1000, 9.5), [1]);
     }
 }

@@ -1,18 +1,15 @@
-//! Check: does a timeline that was edited equal a full simulation, bit for bit? For tests and the command line.
-//!
-//! The reference shares with the timeline the step and what commands do, and nothing of what decides which bodies are computed: it computes
-//! all bodies together in every frame, and where a command wakes who is near, it asks everybody.
+//! Check: random edits on a timeline, and after them the question whether every state of every body has the bits of a full simulation.
+//! For tests and the command line.
 
-use std::fmt;
-use std::sync::Arc;
+use std::collections::BTreeMap;
 
-use forerun_dynamics::{BodyDef, BodyId, BodyState, Environment};
+use forerun_dynamics::{BodyDef, Environment};
 
 use crate::affected::Mutation;
-use crate::frame_table::same_entry;
-use crate::hearing::NAMES_AHEAD;
 pub use crate::random_change::{Random, random_change};
-use crate::{Change, Command, CommandError, Frame, Progress, Timeline, TimelineError, TimelineSettings};
+use crate::reference::run;
+pub use crate::reference::{FullRunError, Mismatch, full_run, mismatches};
+use crate::{Change, Command, CommandKey, Frame, Order, Timeline, TimelineSettings};
 
 /// What is to be checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +18,15 @@ pub struct CheckSettings {
     pub edits: u32,
     /// From which all that is random follows.
     pub seed: u64,
-    /// How many frames are simulated.
+    /// How many frames are computed ahead of the display, and kept behind it.
     pub frames: u32,
+    /// How many frames pass, and the display with them, before the first edit: for a scene that has to settle. Edits act after it.
+    pub settle: u32,
+    /// How many frames the display moves on after each edit.
+    pub display_step: u32,
+    /// The reference computes once for so many edits, and everything is compared then. 1 or more; more is faster, and finds the same but
+    /// cannot say after which of the edits.
+    pub compare_every: u32,
     /// A rule left out, to show that the check notices.
     #[doc(hidden)]
     pub mutation: Mutation,
@@ -30,47 +34,43 @@ pub struct CheckSettings {
 
 impl Default for CheckSettings {
     fn default() -> Self {
-        CheckSettings { edits: 20, seed: 1, frames: 200, mutation: Mutation::None }
+        CheckSettings {
+            edits: 20,
+            seed: 1,
+            frames: 200,
+            settle: 0,
+            display_step: 0,
+            compare_every: 1,
+            mutation: Mutation::None,
+        }
     }
 }
 
 /// A moment in a check: who has a clock may look at it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckMoment {
-    /// An edit is about to be submitted.
+    /// The scene has settled: everything is true, and nothing was edited.
+    Settled,
+    /// An edit is about to be made.
     EditBegins,
     /// All frames are true again.
-    EditEnds,
-    /// The same edit is about to be submitted to the reference, which computes everything after it again.
+    EditEnds {
+        /// From the edit's to the horizon: what a full re-simulation would compute. 0 when the edit was refused and nothing changed.
+        frames: u64,
+    },
+    /// The reference has heard of the edits since it was last compared, and is about to compute.
     FullBegins,
     /// The reference is done.
-    FullEnds,
-}
-
-/// A body and frame whose bits differ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mismatch {
-    /// The frame.
-    pub frame: Frame,
-    /// The body.
-    pub body: BodyId,
-    /// Its state in the timeline.
-    pub found: Option<BodyState>,
-    /// Its state in the full simulation.
-    pub expected: Option<BodyState>,
-}
-
-impl fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Mismatch { frame, body, found, expected } = self;
-        write!(f, "{frame}, body {}: found {found:?}, a full run gives {expected:?}", body.0)
-    }
+    FullEnds {
+        /// From that of the earliest of these edits to the horizon; 0 when there were none.
+        frames: u64,
+    },
 }
 
 /// What a check found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CheckReport {
-    /// Body-frames whose bits differ from the full run, after each edit and at the end.
+    /// Body-frames whose bits differ from the full run, after each edit (or so many as are compared at once) and at the end.
     pub mismatches: u64,
     /// The first of them.
     pub first_mismatch: Option<Mismatch>,
@@ -78,7 +78,7 @@ pub struct CheckReport {
     pub affected: u64,
     /// Body-frames that were computed again for it.
     pub recomputed: u64,
-    /// Body-frames that the full runs computed.
+    /// Body-frames that a full re-simulation from each edit on would have computed.
     pub full: u64,
 }
 
@@ -92,44 +92,161 @@ pub fn check(
     settings: &CheckSettings,
     at: &mut dyn FnMut(CheckMoment),
 ) -> Result<CheckReport, FullRunError> {
-    let all = TimelineSettings { lookahead: settings.frames, past: settings.frames, area_m: None };
-    let mut timeline = Timeline::new(bodies, environment, all).map_err(FullRunError::Start)?;
-    timeline.mutate(settings.mutation);
-    let mut reference = Timeline::new(bodies, environment, all).map_err(FullRunError::Start)?;
-    reference.recompute_all();
-    run(&mut timeline);
-    run(&mut reference);
-
-    let mut random = Random::new(settings.seed);
-    let mut commands = Vec::new();
-    let mut report = CheckReport::default();
-    report.add(&timeline, &reference);
-    for _ in 0..settings.edits {
-        let frame = Frame(1 + random.below(u64::from(settings.frames.max(1))));
-        let change = random_change(&mut timeline, frame, &mut random);
-        let known = timeline.names();
-        at(CheckMoment::EditBegins);
-        let edited = timeline.change(frame, change.clone());
-        run(&mut timeline);
-        at(CheckMoment::EditEnds);
-        // What is refused changed nothing, and the reference need not hear of it.
-        let Ok(key) = edited else { continue };
-        while reference.names() < known {
-            reference.reserve_body();
+    let mut session = Session::new(bodies, environment, settings)?;
+    at(CheckMoment::Settled);
+    session.compare();
+    let batch = settings.compare_every.max(1);
+    for edit in 1..=settings.edits {
+        session.edit(at);
+        if edit % batch == 0 || edit == settings.edits {
+            session.hear()?;
+            at(CheckMoment::FullBegins);
+            run(&mut session.reference);
+            let horizon = session.reference.horizon();
+            let frames = session.earliest.take().map_or(0, |frame| horizon.since(frame) + 1);
+            at(CheckMoment::FullEnds { frames });
+            session.compare();
         }
-        at(CheckMoment::FullBegins);
-        reference.submit(Command { key, change: change.clone() }).map_err(FullRunError::Command)?;
-        run(&mut reference);
-        at(CheckMoment::FullEnds);
-        commands.push(Command { key, change });
-        report.add(&timeline, &reference);
     }
-    // The reference was edited too: compare with one that knew everything from the start.
-    report.add_fresh(&timeline, full_run(bodies, commands, environment, settings.frames))?;
-    let edits = timeline.stats().edits;
-    (report.affected, report.recomputed) = (edits.affected, edits.recomputed);
-    report.full = reference.stats().edits.recomputed;
-    Ok(report)
+    // The reference was edited too, and began where the timeline had settled: compare with one that knew everything from the start.
+    let commands = session.in_force.into_iter().map(|(key, change)| Command { key, change });
+    let frames = session.timeline.horizon().0 as u32;
+    session.report.add_fresh(&session.timeline, full_run(bodies, commands, environment, frames))?;
+    let edits = session.timeline.stats().edits;
+    Ok(CheckReport { affected: edits.affected, recomputed: edits.recomputed, ..session.report })
+}
+
+/// A check under way.
+struct Session {
+    settings: CheckSettings,
+    random: Random,
+    timeline: Timeline,
+    /// Computes everything after the earliest edit that it hears of.
+    reference: Timeline,
+    /// What the reference has not heard of yet: commands given, replaced or, where there is none any more, taken back.
+    unheard: BTreeMap<CommandKey, Option<Change>>,
+    /// The frame of the earliest of those.
+    earliest: Option<Frame>,
+    /// All commands that were given and not taken back.
+    in_force: BTreeMap<CommandKey, Change>,
+    report: CheckReport,
+}
+
+impl Session {
+    fn new(
+        bodies: &[BodyDef],
+        environment: Environment,
+        settings: &CheckSettings,
+    ) -> Result<Session, FullRunError> {
+        let frames = TimelineSettings {
+            lookahead: settings.frames,
+            past: settings.frames,
+            ..TimelineSettings::default()
+        };
+        let mut timeline = Timeline::new(bodies, environment, frames).map_err(FullRunError::Start)?;
+        timeline.mutate(settings.mutation);
+        // What has settled is not computed twice: the full run at the end says whether it is right.
+        let unsettled = (settings.settle == 0).then(|| timeline.fork());
+        run(&mut timeline);
+        for display in 1..=settings.settle {
+            timeline.set_display(Frame(u64::from(display)));
+            run(&mut timeline);
+        }
+        let mut reference = unsettled.unwrap_or_else(|| timeline.fork());
+        // It hears of edits later than the timeline does, and has to know the frames on which they act.
+        let late = settings.display_step.saturating_mul(settings.compare_every);
+        reference.settings.past = settings.frames.saturating_add(late);
+        reference.recompute_all();
+        run(&mut reference);
+        Ok(Session {
+            settings: *settings,
+            random: Random::new(settings.seed),
+            timeline,
+            reference,
+            unheard: BTreeMap::new(),
+            earliest: None,
+            in_force: BTreeMap::new(),
+            report: CheckReport::default(),
+        })
+    }
+
+    /// Makes an edit, lets the timeline work it off, and moves the display on.
+    fn edit(&mut self, at: &mut dyn FnMut(CheckMoment)) {
+        let order = self.random_order();
+        at(CheckMoment::EditBegins);
+        let heard = match order {
+            Order::Undo => self.timeline.undo(),
+            Order::Redo => self.timeline.redo(),
+            Order::Submit(Command { key, .. })
+            | Order::Replace(Command { key, .. })
+            | Order::Retract(key) => self.timeline.obey(order).map(|()| key),
+        };
+        run(&mut self.timeline);
+        // What is refused changed nothing.
+        let Ok(key) = heard else {
+            at(CheckMoment::EditEnds { frames: 0 });
+            return;
+        };
+        at(CheckMoment::EditEnds { frames: self.timeline.horizon().since(key.frame) + 1 });
+        self.note(key);
+        let display = self.timeline.display().plus(u64::from(self.settings.display_step));
+        self.timeline.set_display(display);
+        run(&mut self.timeline);
+    }
+
+    /// Something new, or, of ten edits, three times something about an earlier one.
+    fn random_order(&mut self) -> Order {
+        let first = self.timeline.oldest().0.max(u64::from(self.settings.settle)) + 1;
+        let kept = self.in_force.range(CommandKey { frame: Frame(first), source: 0, sequence: 0 }..);
+        let earlier: Vec<CommandKey> = kept.map(|(key, _)| *key).collect();
+        let pick = earlier.get(self.random.below(earlier.len() as u64) as usize).copied();
+        match (self.random.below(20), pick) {
+            (0..2, Some(key)) => Order::Retract(key),
+            (2..4, Some(key)) => {
+                let change = random_change(&mut self.timeline, key.frame, &mut self.random);
+                Order::Replace(Command { key, change })
+            }
+            (4, Some(_)) => Order::Undo,
+            (5, Some(_)) => Order::Redo,
+            _ => {
+                let frame = Frame(first + self.random.below(self.timeline.horizon().0 + 1 - first));
+                let key = CommandKey { frame, source: 0, sequence: self.timeline.next_sequence() };
+                let change = random_change(&mut self.timeline, frame, &mut self.random);
+                Order::Submit(Command { key, change })
+            }
+        }
+    }
+
+    /// Notes what an edit made of a command.
+    fn note(&mut self, key: CommandKey) {
+        self.report.full += self.timeline.stats().last_edit.full;
+        self.earliest = Some(self.earliest.map_or(key.frame, |frame| frame.min(key.frame)));
+        let change = self.timeline.log.get(&key).cloned();
+        match change.clone() {
+            Some(change) => self.in_force.insert(key, change),
+            None => self.in_force.remove(&key),
+        };
+        self.unheard.insert(key, change);
+    }
+
+    /// Tells the reference what it has not heard of yet.
+    fn hear(&mut self) -> Result<(), FullRunError> {
+        while self.reference.names() < self.timeline.names() {
+            self.reference.reserve_body();
+        }
+        let unheard = std::mem::take(&mut self.unheard);
+        for key in unheard.keys() {
+            self.reference.retract(key);
+        }
+        let given = unheard.into_iter().filter_map(|(key, change)| Some(Command { key, change: change? }));
+        self.reference.submit_all(given).map_err(FullRunError::Command)?;
+        self.reference.set_display(self.timeline.display());
+        Ok(())
+    }
+
+    fn compare(&mut self) {
+        self.report.add(&self.timeline, &self.reference);
+    }
 }
 
 impl CheckReport {
@@ -150,98 +267,11 @@ impl CheckReport {
     }
 }
 
-/// Why there is no full run.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FullRunError {
-    /// The environment or a body is not possible.
-    Start(TimelineError),
-    /// A command is refused.
-    Command(CommandError),
-}
-
-impl fmt::Display for FullRunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            FullRunError::Start(error) => write!(f, "{error}"),
-            FullRunError::Command(error) => write!(f, "a full run refuses a command: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for FullRunError {}
-
-/// A full simulation to frame `frames` that knows all commands from the start and computes all bodies in every frame.
-///
-/// # Errors
-/// When a body is not possible or a command is refused.
-pub fn full_run(
-    bodies: &[BodyDef],
-    commands: impl IntoIterator<Item = Command>,
-    environment: Environment,
-    frames: u32,
-) -> Result<Timeline, FullRunError> {
-    let settings = TimelineSettings { lookahead: frames, past: frames, area_m: None };
-    let mut timeline = Timeline::new(bodies, environment, settings).map_err(FullRunError::Start)?;
-    timeline.recompute_all();
-    // Commands may name bodies that later ones add.
-    let mut commands: Vec<Command> = commands.into_iter().collect();
-    commands.sort_by_key(|command| (!matches!(command.change, Change::Add { .. }), command.key));
-    // And bodies whose names were reserved, or whose `Add` was taken back.
-    let named = commands.iter().filter_map(|command| command.change.body());
-    let known = timeline.names() + NAMES_AHEAD;
-    if let Some(last) = named.map(|body| body.0 as usize).filter(|name| *name < known).max() {
-        Arc::make_mut(&mut timeline.definitions).reserve(last + 1);
-    }
-    timeline.submit_all(commands).map_err(FullRunError::Command)?;
-    run(&mut timeline);
-    Ok(timeline)
-}
-
-/// How many body-frames differ in the frames that both have, and the first of them.
-#[must_use]
-pub fn mismatches(timeline: &Timeline, reference: &Timeline) -> (u64, Option<Mismatch>) {
-    let mut count = 0;
-    let mut first = None;
-    let from = timeline.oldest().max(reference.oldest());
-    let to = timeline.horizon().min(reference.horizon());
-    for frame in (from.0..=to.0).map(Frame) {
-        for body in timeline.table(frame).differences(reference.table(frame)) {
-            let (found, expected) = (timeline.state(body, frame), reference.state(body, frame));
-            debug_assert!(!same_entry(found, expected));
-            count += 1;
-            first =
-                first.or(Some(Mismatch { frame, body, found: found.copied(), expected: expected.copied() }));
-        }
-    }
-    (count, first)
-}
-
-impl Timeline {
-    /// Does the step that leaves a frame once more, for all bodies together, and compares it with what is stored: the first body that
-    /// differs. `None` when none does, or when the next frame is not known to be true.
-    #[must_use]
-    pub fn audit(&self, frame: Frame) -> Option<Mismatch> {
-        if frame < self.oldest() || frame >= self.valid_to() {
-            return None;
-        }
-        let mut again = self.clone();
-        again.stale.entry(frame).or_default().everyone = true;
-        let _ = again.advance();
-        let next = frame.next();
-        let body = *self.table(next).differences(again.table(next)).first()?;
-        let (found, expected) = (self.state(body, next), again.state(body, next));
-        Some(Mismatch { frame: next, body, found: found.copied(), expected: expected.copied() })
-    }
-}
-
-fn run(timeline: &mut Timeline) {
-    while timeline.advance() != Progress::Idle {}
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CommandKey;
+    use crate::CommandError;
+    use forerun_dynamics::BodyId;
     use forerun_geometry::Vec3;
     use forerun_geometry::shape::{Shape, Sphere};
 

@@ -222,6 +222,12 @@ pub enum CommandError {
     },
     /// A command of the same frame, source and sequence number was accepted before.
     DuplicateKey(CommandKey),
+    /// No command of that key is kept.
+    UnknownCommand(CommandKey),
+    /// No order of the local user is left that could be undone.
+    NothingToUndo,
+    /// Nothing was undone that could be done again.
+    NothingToRedo,
     /// No such body was reserved or added.
     UnknownBody(BodyId),
     /// A body of that name exists or existed: names are not used again.
@@ -248,6 +254,13 @@ impl fmt::Display for CommandError {
                 "source {} already sent a command with sequence number {} for {}: count on",
                 key.source, key.sequence, key.frame
             ),
+            CommandError::UnknownCommand(key) => write!(
+                f,
+                "there is no command of source {} with sequence number {} for {}: it was never accepted, was taken back, or is too old",
+                key.source, key.sequence, key.frame
+            ),
+            CommandError::NothingToUndo => write!(f, "there is nothing to undo in the frames that are kept"),
+            CommandError::NothingToRedo => write!(f, "there is nothing to redo: only what was undone last"),
             CommandError::UnknownBody(body) => {
                 write!(f, "body {} is unknown: reserve its name with reserve_body first", body.0)
             }

@@ -20,6 +20,15 @@ impl CommandLog {
         self.by_key.contains_key(key)
     }
 
+    pub(crate) fn get(&self, key: &CommandKey) -> Option<&Change> {
+        self.by_key.get(key)
+    }
+
+    /// Whether a command acts at or before a frame.
+    pub(crate) fn begins_by(&self, frame: Frame) -> bool {
+        self.by_key.first_key_value().is_some_and(|(key, _)| key.frame <= frame)
+    }
+
     pub(crate) fn insert(&mut self, key: CommandKey, change: Change) {
         if let Some(body) = change.body() {
             self.by_body.insert((body, key));

@@ -21,6 +21,8 @@ use crate::stale::Stale;
 /// What the commands to one body at one frame did.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Effect {
+    /// The state before the commands, as the step left it, if the body was there: what is shown up to the frame.
+    pub(crate) arrived: Option<BodyState>,
     /// Swept bound before the commands, if the body was there.
     before: Option<Aabb>,
     /// Swept bound after the commands, if the body is there.
@@ -88,7 +90,7 @@ impl Arrival<'_> {
 
     /// The commands to one body act on its state.
     fn act(&self, id: BodyId, before: Option<BodyState>) -> (Option<BodyState>, Effect) {
-        let mut effect = Effect::default();
+        let mut effect = Effect { arrived: before, ..Effect::default() };
         let mut body = self.definitions.body(id, self.frame.minus(1)).cloned();
         let mut state = before;
         let environment = self.definitions.environment(self.frame);

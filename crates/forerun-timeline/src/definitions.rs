@@ -11,6 +11,7 @@ use forerun_geometry::Vec3;
 use crate::Frame;
 use crate::command::{Change, CommandKey};
 use crate::effect::body_after;
+use crate::shared_list::SharedList;
 use crate::stale::same_body;
 
 /// What one body is from which frame on.
@@ -32,7 +33,7 @@ impl History {
 /// What every body and gravity are, over frames.
 #[derive(Clone, Debug)]
 pub(crate) struct Definitions {
-    bodies: Vec<Arc<History>>,
+    bodies: SharedList<Arc<History>>,
     /// Sorted by frame; each holds until the next; the first holds from the beginning.
     environments: Vec<(Frame, Environment)>,
 }
@@ -40,10 +41,21 @@ pub(crate) struct Definitions {
 impl Definitions {
     /// Bodies 0, 1, 2, ... that exist from frame 0 on.
     pub(crate) fn new(bodies: Vec<(Arc<BodyDef>, Arc<Body>)>, environment: Environment) -> Definitions {
-        let bodies = bodies
-            .into_iter()
-            .map(|(def, body)| Arc::new(History { def: Some(def), entries: vec![(Frame(0), Some(body))] }));
-        Definitions { bodies: bodies.collect(), environments: vec![(Frame(0), environment)] }
+        let bodies = bodies.into_iter().map(|(def, body)| (Some(def), Some(body)));
+        Definitions::at(Frame(0), bodies, environment)
+    }
+
+    /// For the names 0, 1, 2, ...: how each was made, if it was, and what it is from a frame on, if it is there.
+    pub(crate) fn at(
+        from: Frame,
+        bodies: impl IntoIterator<Item = (Option<Arc<BodyDef>>, Option<Arc<Body>>)>,
+        environment: Environment,
+    ) -> Definitions {
+        let bodies = bodies.into_iter().map(|(def, body)| {
+            let entries = body.map(|body| (from, Some(body)));
+            Arc::new(History { def, entries: entries.into_iter().collect() })
+        });
+        Definitions { bodies: bodies.collect(), environments: vec![(from, environment)] }
     }
 
     /// How many names are in use.
@@ -54,7 +66,7 @@ impl Definitions {
     /// Makes names up to `count` known.
     pub(crate) fn reserve(&mut self, count: usize) {
         if count > self.bodies.len() {
-            self.bodies.resize_with(count, Arc::default);
+            self.bodies.grow(count, &Arc::default());
         }
     }
 
@@ -63,9 +75,11 @@ impl Definitions {
         self.bodies.get(body.0 as usize)?.def.as_ref()
     }
 
-    /// Says how a body is made, before the history is rebuilt with the command that adds it.
-    pub(crate) fn set_def(&mut self, body: BodyId, def: Arc<BodyDef>) {
-        Arc::make_mut(&mut self.bodies[body.0 as usize]).def = Some(def);
+    /// Says how a body is made, before the history is rebuilt with the command that adds it; `None` when that was taken back.
+    pub(crate) fn set_def(&mut self, body: BodyId, def: Option<Arc<BodyDef>>) {
+        if let Some(history) = self.history_mut(body) {
+            history.def = def;
+        }
     }
 
     /// The body as it is from this frame to the next.
@@ -75,7 +89,11 @@ impl Definitions {
 
     /// All that a body is over the frames; it stays as it is when the definitions change.
     pub(crate) fn history(&self, body: BodyId) -> Arc<History> {
-        Arc::clone(&self.bodies[body.0 as usize])
+        self.bodies.get(body.0 as usize).cloned().unwrap_or_default()
+    }
+
+    fn history_mut(&mut self, body: BodyId) -> Option<&mut History> {
+        self.bodies.get_mut(body.0 as usize).map(Arc::make_mut)
     }
 
     /// Gravity and settings as they are from this frame to the next.
@@ -91,7 +109,7 @@ impl Definitions {
         from: Frame,
         commands: impl Iterator<Item = (CommandKey, &'a Change)>,
     ) {
-        let history = Arc::make_mut(&mut self.bodies[body.0 as usize]);
+        let Some(history) = self.history_mut(body) else { return };
         let kept = history.entries.partition_point(|(frame, _)| *frame < from);
         let old = history.entries.split_off(kept);
         let mut current = history.entries.last().and_then(|(_, body)| body.clone());
@@ -132,7 +150,9 @@ impl Definitions {
     pub(crate) fn forget_before(&mut self, oldest: Frame, bodies: impl Iterator<Item = BodyId>) {
         drop_before(&mut self.environments, oldest);
         for body in bodies {
-            drop_before(&mut Arc::make_mut(&mut self.bodies[body.0 as usize]).entries, oldest);
+            if let Some(history) = self.history_mut(body) {
+                drop_before(&mut history.entries, oldest);
+            }
         }
     }
 }

@@ -8,8 +8,11 @@ use std::sync::Arc;
 use forerun_dynamics::{BodyId, BodyState};
 use forerun_geometry::{Quat, Vec3};
 
+use crate::shared_list::{CHUNK, SharedList};
+use crate::touch_table::{Told, TouchTable};
+
 /// Bodies of one block: neighbours by id.
-const BLOCK_BODIES: usize = 32;
+pub(crate) const BLOCK_BODIES: usize = 32;
 
 /// What stands where there is no body, so that equal blocks have equal bits.
 const ABSENT: BodyState = BodyState {
@@ -48,8 +51,9 @@ impl Block {
 /// The states of all bodies at one frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FrameTable {
-    blocks: Vec<Arc<Block>>,
+    blocks: SharedList<Arc<Block>>,
     population: u32,
+    touches: TouchTable,
 }
 
 /// A state to be stored; `None` where the body is not there.
@@ -65,7 +69,8 @@ impl FrameTable {
             }
             Arc::new(block)
         });
-        FrameTable { blocks: blocks.collect(), population: states.len() as u32 }
+        let population = states.len() as u32;
+        FrameTable { blocks: blocks.collect(), population, touches: TouchTable::default() }
     }
 
     /// How many bodies there are.
@@ -89,17 +94,17 @@ impl FrameTable {
     /// The bodies whose bits differ, or that are only in one of the tables, in the order of their ids.
     pub(crate) fn differences(&self, other: &FrameTable) -> Vec<BodyId> {
         let mut differing = Vec::new();
-        for index in 0..self.blocks.len().max(other.blocks.len()) {
-            let (mine, theirs) = (self.blocks.get(index), other.blocks.get(index));
-            if let (Some(mine), Some(theirs)) = (mine, theirs)
-                && Arc::ptr_eq(mine, theirs)
-            {
-                continue;
-            }
-            for slot in 0..BLOCK_BODIES {
-                let (a, b) = (mine.and_then(|m| m.get(slot)), theirs.and_then(|t| t.get(slot)));
-                if !same_entry(a, b) {
-                    differing.push(body_at(index, slot));
+        for (first, mine, theirs) in self.blocks.unshared(&other.blocks) {
+            for index in 0..mine.len().max(theirs.len()) {
+                let (mine, theirs) = (mine.get(index), theirs.get(index));
+                if matches!((mine, theirs), (Some(a), Some(b)) if Arc::ptr_eq(a, b)) {
+                    continue;
+                }
+                for slot in 0..BLOCK_BODIES {
+                    let (a, b) = (mine.and_then(|m| m.get(slot)), theirs.and_then(|t| t.get(slot)));
+                    if !same_entry(a, b) {
+                        differing.push(body_at(first + index, slot));
+                    }
                 }
             }
         }
@@ -123,10 +128,12 @@ impl FrameTable {
         let mut written = Vec::new();
         for (body, state) in changes {
             let (index, slot) = place(*body);
-            while table.blocks.len() <= index {
-                table.blocks.push(Arc::new(Block::EMPTY));
+            if index >= table.blocks.len() {
+                table.blocks.grow(index + 1, &Arc::new(Block::EMPTY));
             }
-            let block = Arc::make_mut(&mut table.blocks[index]);
+            // It was just made so long.
+            let Some(block) = table.blocks.get_mut(index) else { continue };
+            let block = Arc::make_mut(block);
             table.population += u32::from(state.is_some());
             table.population -= u32::from(block.get(slot).is_some());
             block.set(slot, *state);
@@ -134,32 +141,64 @@ impl FrameTable {
                 written.push(index);
             }
         }
-        for index in written {
-            if let Some(old) = before.blocks.get(index).filter(|old| old.same_bits(&table.blocks[index])) {
-                table.blocks[index] = Arc::clone(old);
-            }
-        }
+        table.share(&written, before);
         if table.shares_all(before) {
             return (Arc::clone(before), changed);
         }
         (Arc::new(table), changed)
     }
 
-    /// Memory that `before` does not share. Bytes.
-    pub(crate) fn bytes_beyond(self: &Arc<FrameTable>, before: Option<&Arc<FrameTable>>) -> usize {
-        if before.is_some_and(|before| Arc::ptr_eq(self, before)) {
-            return 0;
+    /// Who touched whom in the step that led to the frame.
+    pub(crate) fn touches(&self) -> &TouchTable {
+        &self.touches
+    }
+
+    /// This table with other lists of touches. What comes out as in `before`, the table of the frame before, is shared with it.
+    pub(crate) fn with_touches(
+        self: Arc<FrameTable>,
+        told: &Told,
+        before: &Arc<FrameTable>,
+    ) -> Arc<FrameTable> {
+        let touches = self.touches.with(told, &before.touches);
+        if touches.shares_all(&self.touches) {
+            return self;
         }
-        let shared = |index: usize, block: &Arc<Block>| {
-            before.and_then(|before| before.blocks.get(index)).is_some_and(|old| Arc::ptr_eq(old, block))
-        };
-        let own = self.blocks.iter().enumerate().filter(|(index, block)| !shared(*index, block)).count();
-        own * size_of::<Block>() + self.blocks.len() * size_of::<Arc<Block>>() + size_of::<FrameTable>()
+        let table = FrameTable { touches, ..FrameTable::clone(&self) };
+        if table.shares_all(before) { Arc::clone(before) } else { Arc::new(table) }
     }
 
     fn shares_all(&self, other: &FrameTable) -> bool {
-        self.blocks.len() == other.blocks.len()
-            && self.blocks.iter().zip(&other.blocks).all(|(a, b)| Arc::ptr_eq(a, b))
+        self.blocks.shares_all(&other.blocks) && self.touches.shares_all(&other.touches)
+    }
+
+    /// Takes over the blocks of `before` that have the bits of those written (sorted).
+    fn share(&mut self, written: &[usize], before: &FrameTable) {
+        for index in written {
+            if let (Some(mine), Some(old)) = (self.blocks.get_mut(*index), before.blocks.get(*index))
+                && old.same_bits(mine)
+            {
+                *mine = Arc::clone(old);
+            }
+        }
+        let mut chunks: Vec<usize> = written.iter().map(|index| index / CHUNK).collect();
+        chunks.dedup();
+        for chunk in chunks {
+            self.blocks.share_chunk(chunk * CHUNK, &before.blocks, Arc::ptr_eq);
+        }
+    }
+
+    /// Memory that `before` does not share. Bytes.
+    pub(crate) fn bytes_beyond(&self, before: Option<&FrameTable>) -> usize {
+        let nothing = SharedList::default();
+        let chunks = self.blocks.unshared(before.map_or(&nothing, |before| &before.blocks));
+        let own = chunks.map(|(_, mine, theirs)| {
+            let shared = |(index, block)| matches!(theirs.get(index), Some(old) if Arc::ptr_eq(old, block));
+            let own = mine.iter().enumerate().filter(|entry| !shared(*entry)).count();
+            own * size_of::<Block>() + size_of_val(mine)
+        });
+        let own: usize = own.sum();
+        let touches = self.touches.bytes_beyond(before.map(|before| &before.touches));
+        own + touches + self.blocks.len().div_ceil(CHUNK) * size_of::<usize>() + size_of::<FrameTable>()
     }
 }
 
@@ -220,7 +259,7 @@ mod tests {
     fn untouched_blocks_are_shared() {
         let old = table(100);
         let (new, _) = old.with_entries(&[(BodyId(50), Some(state(0.5)))], &old);
-        let shared = old.blocks.iter().zip(&new.blocks).filter(|(a, b)| Arc::ptr_eq(a, b)).count();
+        let shared = old.blocks.iter().zip(new.blocks.iter()).filter(|(a, b)| Arc::ptr_eq(a, b)).count();
         assert_eq!(shared, 3);
     }
 

@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use forerun_dynamics::{Body, BodyDef, BodyId, Environment};
 
+use crate::order::LOCAL;
 use crate::stale::same_body;
-use crate::timeline::{Counters, Timeline};
-use crate::{Change, Command, CommandError, CommandKey, Frame};
+use crate::stats::Edit;
+use crate::timeline::{EDITS_KEPT, Timeline};
+use crate::{Change, Command, CommandError, CommandKey, Frame, Order};
 
 /// How far the id of an added body may be ahead of the names in use: ids index memory.
 pub(crate) const NAMES_AHEAD: usize = 65_536;
@@ -20,26 +22,62 @@ impl Timeline {
     pub fn submit(&mut self, command: Command) -> Result<(), CommandError> {
         let Command { key, change } = command;
         self.check(&key, &change)?;
-        if key.source == 0 {
+        if key.source == LOCAL {
             self.next_sequence = self.next_sequence.max(key.sequence.saturating_add(1));
         }
-        if let Change::Add { body, def } = &change {
-            let definitions = Arc::make_mut(&mut self.definitions);
-            definitions.reserve(body.0 as usize + 1);
-            definitions.set_def(*body, Arc::new(BodyDef::clone(def)));
-        }
         let body = change.body();
-        self.log.insert(key, change);
+        self.insert(key, change);
         self.note(body, key.frame);
         Ok(())
     }
 
     /// Takes an accepted command back, as if it had never been sent. `false` when there is none of that key that acts after the oldest
-    /// frame. The name of a body that is not added after all is not used again.
+    /// frame. The name of a body that is not added after all may only be used by that same command.
     pub fn retract(&mut self, key: &CommandKey) -> bool {
-        let Some(change) = self.log.remove(key) else { return false };
+        let Some(change) = self.remove(key) else { return false };
         self.note(change.body(), key.frame);
         true
+    }
+
+    /// Puts another change in the place of an accepted command.
+    ///
+    /// # Errors
+    /// [`CommandError::UnknownCommand`], or as [`Timeline::submit`]; then the old command stands.
+    pub fn replace(&mut self, key: &CommandKey, change: Change) -> Result<(), CommandError> {
+        let before = self.remove(key).ok_or(CommandError::UnknownCommand(*key))?;
+        if let Err(error) = self.check(key, &change) {
+            self.insert(*key, before);
+            return Err(error);
+        }
+        let bodies = (before.body(), change.body());
+        self.insert(*key, change);
+        self.note(bodies.0, key.frame);
+        if bodies.1 != bodies.0 {
+            self.note(bodies.1, key.frame);
+        }
+        Ok(())
+    }
+
+    /// Puts a command into the log, and notes how the body that it adds is made.
+    fn insert(&mut self, key: CommandKey, change: Change) {
+        if let Change::Add { body, def } = &change {
+            let definitions = Arc::make_mut(&mut self.definitions);
+            definitions.reserve(body.0 as usize + 1);
+            definitions.set_def(*body, Some(Arc::new(BodyDef::clone(def))));
+        }
+        Arc::make_mut(&mut self.log).insert(key, change);
+    }
+
+    /// Takes a command out of the log; what it was.
+    fn remove(&mut self, key: &CommandKey) -> Option<Change> {
+        if !self.log.contains(key) {
+            return None;
+        }
+        let change = Arc::make_mut(&mut self.log).remove(key)?;
+        if let Change::Add { body, .. } = change {
+            Arc::make_mut(&mut self.definitions).set_def(body, None);
+        }
+        Some(change)
     }
 
     /// Accepts commands in turn.
@@ -50,19 +88,19 @@ impl Timeline {
         commands.into_iter().try_for_each(|command| self.submit(command))
     }
 
-    /// Accepts a change by the local user (source 0, the next sequence number).
+    /// Accepts a change by the local user (source 0, the next sequence number); it can be [undone](Timeline::undo).
     ///
     /// # Errors
     /// As [`Timeline::submit`].
     pub fn change(&mut self, frame: Frame, change: Change) -> Result<CommandKey, CommandError> {
-        let key = CommandKey { frame, source: 0, sequence: self.next_sequence };
-        self.submit(Command { key, change })?;
+        let key = CommandKey { frame, source: LOCAL, sequence: self.next_sequence };
+        self.obey(Order::Submit(Command { key, change }))?;
         Ok(key)
     }
 
     fn check(&self, key: &CommandKey, change: &Change) -> Result<(), CommandError> {
-        if key.frame <= self.oldest {
-            return Err(CommandError::TooOld { frame: key.frame, oldest: self.oldest });
+        if key.frame <= self.oldest() {
+            return Err(CommandError::TooOld { frame: key.frame, oldest: self.oldest() });
         }
         if self.log.contains(key) {
             return Err(CommandError::DuplicateKey(*key));
@@ -107,8 +145,25 @@ impl Timeline {
                 self.stale.entry(Frame(frame)).or_default().everyone = true;
             }
         }
-        if was_true && !self.stale.is_empty() {
-            self.stats.last_edit = Counters::default();
+        if !self.stale.is_empty() {
+            self.note_edit(frame, was_true);
+        }
+    }
+
+    /// Counts a command to the edit that is being worked off, or begins a new one.
+    fn note_edit(&mut self, frame: Frame, is_new: bool) {
+        let bodies = self.table(self.horizon()).population() as u64;
+        let horizon = self.horizon();
+        if is_new {
+            if self.edits.len() == EDITS_KEPT {
+                self.edits.pop_front();
+            }
+            self.edits.push_back(Edit { frame, ..Edit::default() });
+        }
+        if let Some(edit) = self.edits.back_mut() {
+            edit.frame = edit.frame.min(frame);
+            edit.commands += 1;
+            edit.full = bodies * (horizon.since(edit.frame) + 1);
         }
     }
 

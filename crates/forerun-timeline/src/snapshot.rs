@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyId, BodyState};
+use forerun_dynamics::{Body, BodyId, BodyState, Environment};
 use forerun_geometry::{Pose, Vec3};
 
+use crate::commanding::FrameEffects;
 use crate::definitions::Definitions;
 use crate::frame_table::FrameTable;
+use crate::tables::Tables;
 use crate::{Frame, Timeline, sample};
 
 /// A body that physics is late with goes on for so many frames before it is held.
@@ -43,16 +45,26 @@ pub struct Sample {
 }
 
 /// States of all bodies from [`oldest`](Snapshot::oldest) to [`horizon`](Snapshot::horizon), as they were known when it was made.
-/// Making one costs a reference count per frame; it never changes and has no locks.
+/// Making one costs a reference count per frame in which something moved; it never changes and has no locks.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    oldest: Frame,
     valid_to: Frame,
-    /// The states at `oldest` and the frames after it; never empty.
-    tables: Vec<Arc<FrameTable>>,
+    pub(crate) tables: Tables,
     definitions: Arc<Definitions>,
-    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body.
-    doubtful: Vec<(BodyId, Frame)>,
+    /// The bodies that wait to be recomputed. Sorted by body.
+    pub(crate) doubtful: Vec<Doubt>,
+    /// What the commands of each frame did.
+    pub(crate) effects: Arc<BTreeMap<Frame, FrameEffects>>,
+}
+
+/// A body that waits to be recomputed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Doubt {
+    pub(crate) body: BodyId,
+    /// The last frame at which it is known to be true.
+    pub(crate) known_to: Frame,
+    /// Whether it is known where the step from there leads, and only what commands then do to it is not.
+    pub(crate) arrives: bool,
 }
 
 impl Timeline {
@@ -60,24 +72,26 @@ impl Timeline {
     #[must_use]
     pub fn snapshot(&self) -> Arc<Snapshot> {
         Arc::new(Snapshot {
-            oldest: self.oldest(),
             valid_to: self.valid_to(),
-            tables: self.tables.iter().cloned().collect(),
+            tables: self.tables.clone(),
             definitions: Arc::clone(&self.definitions),
             doubtful: self.doubtful(),
+            effects: Arc::clone(&self.effects),
         })
     }
 
-    /// The bodies that wait to be recomputed, with the last frame at which they are known to be true. Sorted by body. There may be
-    /// more: whom these will reach is not known yet.
-    pub(crate) fn doubtful(&self) -> Vec<(BodyId, Frame)> {
+    /// The bodies that wait to be recomputed. Sorted by body. There may be more: whom these will reach is not known yet.
+    pub(crate) fn doubtful(&self) -> Vec<Doubt> {
         let mut doubtful = BTreeMap::new();
         for (frame, stale) in &self.stale {
+            let body_now = |body| self.definitions.body(body, *frame);
+            let stepped = stale.stepped_otherwise(self.table(*frame), body_now);
             for body in self.out_of_date(*frame, stale) {
-                doubtful.entry(body).or_insert(*frame);
+                let arrives = stepped.binary_search(&body).is_err();
+                doubtful.entry(body).or_insert(Doubt { body, known_to: *frame, arrives });
             }
         }
-        doubtful.into_iter().collect()
+        doubtful.into_values().collect()
     }
 }
 
@@ -85,13 +99,13 @@ impl Snapshot {
     /// The oldest frame kept.
     #[must_use]
     pub fn oldest(&self) -> Frame {
-        self.oldest
+        self.tables.oldest()
     }
 
     /// The last frame computed.
     #[must_use]
     pub fn horizon(&self) -> Frame {
-        self.oldest.plus(self.tables.len() as u64 - 1)
+        self.tables.horizon()
     }
 
     /// The last frame that is known to be true for all bodies.
@@ -103,14 +117,13 @@ impl Snapshot {
     /// Length of a frame. Seconds.
     #[must_use]
     pub fn frame_seconds(&self) -> f32 {
-        self.definitions.environment(self.oldest).settings.frame_seconds
+        self.definitions.environment(self.oldest()).settings.frame_seconds
     }
 
     /// The stored state of a body; `None` when there is none at that frame.
     #[must_use]
     pub fn state(&self, body: BodyId, frame: Frame) -> Option<&BodyState> {
-        let index = frame.0.checked_sub(self.oldest.0)?;
-        self.tables.get(index as usize)?.get(body)
+        self.tables.get(frame)?.get(body)
     }
 
     /// The body as it is from this frame to the next; `None` when it does not exist then.
@@ -121,36 +134,44 @@ impl Snapshot {
 
     /// The bodies that are stored at a frame, in the order of their ids; none when the frame is not stored.
     pub fn bodies_at(&self, frame: Frame) -> impl Iterator<Item = BodyId> {
-        let table = frame.0.checked_sub(self.oldest.0).and_then(|index| self.tables.get(index as usize));
-        table.into_iter().flat_map(|table| table.iter().map(|(body, _)| body))
+        self.tables.get(frame).into_iter().flat_map(|table| table.iter().map(|(body, _)| body))
     }
 
-    /// The body at a time (seconds since frame 0): exactly the stored state at a frame, between two of them interpolated, past the
-    /// last one that is known held. `None` where the body does not exist.
+    /// The body at a time (seconds since frame 0): exactly the stored state at a frame; between two of them interpolated towards where the
+    /// step leads, so that what a command does to a body is seen at the command's frame and not before; past the last one that is
+    /// known held. `None` where the body does not exist.
     #[must_use]
     pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
-        self.sample_at(body, self.moment(seconds))
+        self.sample_at(body, &self.look_at(seconds))
     }
 
     /// All bodies at a time, in the order of their ids. `samples` is emptied first and keeps its memory.
     pub fn sample_all(&self, seconds: f64, samples: &mut Vec<(BodyId, Sample)>) {
         samples.clear();
-        let moment = self.moment(seconds);
+        let look = self.look_at(seconds);
+        self.for_each_shown(look.moment, |body| {
+            samples.extend(self.sample_at(body, &look).map(|sample| (body, sample)));
+        });
+    }
+
+    /// Calls `visit` with the bodies of which there may be something to show at a moment, in the order of their ids.
+    pub(crate) fn for_each_shown(&self, moment: Moment, visit: impl FnMut(BodyId)) {
         let frame = moment.frame.min(self.horizon());
+        if self.doubtful.is_empty() {
+            return self.bodies_at(frame).for_each(visit);
+        }
         // A body that waits to be recomputed may be gone at this frame already, and still be shown as it was.
         let mut bodies: Vec<BodyId> = self.bodies_at(frame).collect();
-        if !self.doubtful.is_empty() {
-            bodies.extend(self.doubtful.iter().map(|(body, _)| *body));
-            bodies.sort_unstable();
-            bodies.dedup();
-        }
-        samples.extend(bodies.into_iter().filter_map(|body| Some((body, self.sample_at(body, moment)?))));
+        bodies.extend(self.doubtful.iter().map(|doubt| doubt.body));
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies.into_iter().for_each(visit);
     }
 
     /// The fewest states that a body has stored ahead of a display time (seconds) and that are known to be true.
     #[must_use]
     pub fn queue_min(&self, seconds: f64) -> u64 {
-        let shortest = self.doubtful.iter().map(|(_, frame)| *frame).min();
+        let shortest = self.doubtful.iter().map(|doubt| doubt.known_to).min();
         shortest.unwrap_or_else(|| self.horizon()).since(self.moment(seconds).frame)
     }
 
@@ -160,12 +181,12 @@ impl Snapshot {
         // Bodies that wait to be recomputed have fewer; when all of them wait, the longest counts.
         let last = self.horizon();
         let waiting = self.bodies_at(last).all(|body| self.known_to(body) < last);
-        let longest = self.doubtful.iter().map(|(_, frame)| *frame).max().filter(|_| waiting);
+        let longest = self.doubtful.iter().map(|doubt| doubt.known_to).max().filter(|_| waiting);
         longest.unwrap_or(last).since(self.moment(seconds).frame)
     }
 
-    fn moment(&self, seconds: f64) -> Moment {
-        let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest.0 as f64);
+    pub(crate) fn moment(&self, seconds: f64) -> Moment {
+        let frames = (seconds / f64::from(self.frame_seconds())).max(self.oldest().0 as f64);
         // A time that was computed from a frame means that frame (dissertation, algorithm 1: epsilon).
         let nearest = frames.round();
         if (frames - nearest).abs() <= SAME_FRAME * nearest.max(1.0) {
@@ -175,49 +196,111 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
-    /// The last frame at which a body is known to be true.
-    fn known_to(&self, body: BodyId) -> Frame {
-        let found = self.doubtful.binary_search_by_key(&body, |(id, _)| *id);
-        found.map_or_else(|_| self.horizon(), |index| self.doubtful[index].1)
+    /// The last frame that a display at a time (seconds) has reached; at least the oldest.
+    pub(crate) fn frame_by(&self, seconds: f64) -> Frame {
+        self.moment(seconds).frame
     }
 
-    fn sample_at(&self, id: BodyId, moment: Moment) -> Option<Sample> {
-        let known_to = self.known_to(id);
-        let Moment { frame, part } = moment;
-        if frame > known_to || (frame == known_to && part > 0.0) {
-            return self.sample_late(id, moment, known_to);
+    /// What all samples of a time have in common.
+    pub(crate) fn look_at(&self, seconds: f64) -> Look<'_> {
+        let moment = self.moment(seconds);
+        let next = moment.frame.next();
+        Look {
+            moment,
+            here: self.tables.get(moment.frame),
+            next: self.tables.get(next),
+            commanded: self.effects.get(&next),
+            environment: self.definitions.environment(moment.frame),
+        }
+    }
+
+    fn doubt(&self, body: BodyId) -> Option<&Doubt> {
+        if self.doubtful.is_empty() {
+            return None;
+        }
+        let found = self.doubtful.binary_search_by_key(&body, |doubt| doubt.body);
+        found.ok().map(|index| &self.doubtful[index])
+    }
+
+    /// The last frame at which a body is known to be true.
+    pub(crate) fn known_to(&self, body: BodyId) -> Frame {
+        self.doubt(body).map_or_else(|| self.horizon(), |doubt| doubt.known_to)
+    }
+
+    fn sample_at(&self, id: BodyId, look: &Look) -> Option<Sample> {
+        let (body, state, certainty) = self.shown(id, look)?;
+        Some(sample_of(body, &state, certainty))
+    }
+
+    /// What a body is at a time, the state that it is shown in, and how sure that is.
+    pub(crate) fn shown(&self, id: BodyId, look: &Look) -> Option<(&Body, BodyState, Certainty)> {
+        let doubt = self.doubt(id);
+        let known_to = doubt.map_or_else(|| self.horizon(), |doubt| doubt.known_to);
+        let arrives = doubt.is_some_and(|doubt| doubt.arrives);
+        let Moment { frame, part } = look.moment;
+        if frame > known_to || (frame == known_to && part > 0.0 && !arrives) {
+            return self.shown_late(id, look.moment, known_to);
         }
         let body = self.definitions.body(id, frame)?;
-        let state = self.state(id, frame)?;
-        let shown = match self.state(id, frame.next()) {
-            Some(next) if part > 0.0 => {
-                sample::between((state, next), part, body, &self.definitions.environment(frame))
-            }
-            _ => *state,
-        };
+        let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
-        Some(sample_of(body, &shown, if beyond { Certainty::Presumed } else { Certainty::Exact }))
+        let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
+        let next = look.arrival(id).filter(|_| part > 0.0);
+        Some(match next {
+            Some(next) if !stays(state, next) => {
+                (body, sample::between((state, next), part, body, &look.environment), certainty)
+            }
+            _ => (body, *state, certainty),
+        })
     }
 
     /// A body after the last frame at which it is known.
-    fn sample_late(&self, id: BodyId, moment: Moment, known_to: Frame) -> Option<Sample> {
+    fn shown_late(
+        &self,
+        id: BodyId,
+        moment: Moment,
+        known_to: Frame,
+    ) -> Option<(&Body, BodyState, Certainty)> {
         let body = self.definitions.body(id, known_to)?;
         let state = self.state(id, known_to)?;
         if known_to == self.horizon() {
-            return Some(sample_of(body, state, Certainty::Held));
+            return Some((body, *state, Certainty::Held));
         }
         let late = moment.frame.since(known_to) as f32 + moment.part;
         let shown = sample::beyond(state, late.min(EXTRAPOLATED_FRAMES), self.frame_seconds());
         let certainty = if late <= EXTRAPOLATED_FRAMES { Certainty::Extrapolated } else { Certainty::Held };
-        Some(sample_of(body, &shown, certainty))
+        Some((body, shown, certainty))
     }
+}
+
+/// A time, and what is stored around it.
+pub(crate) struct Look<'a> {
+    pub(crate) moment: Moment,
+    pub(crate) here: Option<&'a Arc<FrameTable>>,
+    pub(crate) next: Option<&'a Arc<FrameTable>>,
+    /// What the commands of the next frame did.
+    commanded: Option<&'a FrameEffects>,
+    pub(crate) environment: Environment,
+}
+
+impl<'a> Look<'a> {
+    /// Where the step leads a body, before the commands of the next frame: nothing that is shown before that frame depends on those.
+    pub(crate) fn arrival(&self, body: BodyId) -> Option<&'a BodyState> {
+        let commanded = self.commanded.and_then(|effects| effects.get(&body)?.arrived.as_ref());
+        commanded.or_else(|| self.next?.get(body))
+    }
+}
+
+/// Whether a body is the same at both frames, however long it has been at rest. Mostly they are the same memory.
+fn stays(state: &BodyState, next: &BodyState) -> bool {
+    std::ptr::eq(state, next) || BodyState { rest: state.rest, ..*next }.same_bits(state)
 }
 
 /// A time, as a frame and a part of the next (0 to 1).
 #[derive(Clone, Copy, Debug)]
-struct Moment {
-    frame: Frame,
-    part: f32,
+pub(crate) struct Moment {
+    pub(crate) frame: Frame,
+    pub(crate) part: f32,
 }
 
 fn sample_of(body: &Body, state: &BodyState, certainty: Certainty) -> Sample {

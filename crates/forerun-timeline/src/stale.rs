@@ -19,6 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use forerun_dynamics::{Body, BodyId};
+use forerun_geometry::Shape;
 
 use crate::frame_table::FrameTable;
 
@@ -48,6 +49,21 @@ impl Stale {
         stored: &Arc<FrameTable>,
         body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
     ) -> Vec<BodyId> {
+        let mut bodies = self.stepped_otherwise(stored, body_now);
+        if !self.touched.is_empty() {
+            bodies.extend(&self.touched);
+            bodies.sort_unstable();
+            bodies.dedup();
+        }
+        bodies
+    }
+
+    /// Those among them that the step itself may lead elsewhere, and not only commands after it. Sorted.
+    pub(crate) fn stepped_otherwise<'a>(
+        &self,
+        stored: &Arc<FrameTable>,
+        body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
+    ) -> Vec<BodyId> {
         let mut bodies = self.basis.as_ref().map_or_else(Vec::new, |old| stored.differences(old));
         if self.everyone {
             bodies.extend(stored.iter().map(|(body, _)| body));
@@ -58,26 +74,25 @@ impl Stale {
                 .filter(|(body, old)| !same_body(body_now(**body), old.as_ref()))
                 .map(|(b, _)| *b),
         );
-        bodies.extend(&self.touched);
         bodies.sort_unstable();
         bodies.dedup();
         bodies
     }
 }
 
-/// Whether a body is the same before and after. What a body is made of never changes, and comparing meshes would take long.
+/// Whether a body is the same before and after. A name may stand for another shape when the command that adds it was replaced.
 pub(crate) fn same_body(a: Option<&Arc<Body>>, b: Option<&Arc<Body>>) -> bool {
     match (a, b) {
-        (Some(a), Some(b)) => Arc::ptr_eq(a, b) || same_where_commands_act(a, b),
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b) || same_numbers(a, b) && same_shape(&a.shape, &b.shape),
         (None, None) => true,
         _ => false,
     }
 }
 
-fn same_where_commands_act(a: &Body, b: &Body) -> bool {
+fn same_numbers(a: &Body, b: &Body) -> bool {
     let Body {
         shape: _,
-        frame: _,
+        frame,
         kind,
         material,
         inverse_mass,
@@ -86,10 +101,21 @@ fn same_where_commands_act(a: &Body, b: &Body) -> bool {
         force,
         torque,
         spring,
-        radius: _,
-        half_thickness: _,
+        radius,
+        half_thickness,
     } = a;
-    let constants = (kind, material, gravity_scale, force, torque, spring);
-    constants == (&b.kind, &b.material, &b.gravity_scale, &b.force, &b.torque, &b.spring)
-        && (inverse_mass, inverse_inertia) == (&b.inverse_mass, &b.inverse_inertia)
+    let commanded = (kind, material, gravity_scale, force, torque, spring);
+    let made = (frame, inverse_mass, inverse_inertia, radius, half_thickness);
+    commanded == (&b.kind, &b.material, &b.gravity_scale, &b.force, &b.torque, &b.spring)
+        && made == (&b.frame, &b.inverse_mass, &b.inverse_inertia, &b.radius, &b.half_thickness)
+}
+
+/// Large shapes by where they are in memory: what commands change keeps that, and comparing meshes would take long.
+fn same_shape(a: &Shape, b: &Shape) -> bool {
+    match (a, b) {
+        (Shape::Hull(a), Shape::Hull(b)) => Arc::ptr_eq(a, b),
+        (Shape::Compound(a), Shape::Compound(b)) => Arc::ptr_eq(a, b),
+        (Shape::Mesh(a), Shape::Mesh(b)) => Arc::ptr_eq(a, b),
+        _ => a == b,
+    }
 }

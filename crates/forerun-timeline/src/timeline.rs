@@ -11,26 +11,38 @@ use crate::command_log::CommandLog;
 use crate::commanding::FrameEffects;
 use crate::definitions::Definitions;
 use crate::frame_table::FrameTable;
+use crate::order::UndoLog;
 use crate::stale::Stale;
+use crate::stats::{Advance, Edit, Stats};
+use crate::tables::Tables;
 use crate::{Change, CommandKey, Frame};
 
 /// Edge of an area where no body says how large things are. Metres.
 const AREA_EDGE_M: f32 = 2.0;
 
-/// How far a timeline looks ahead and back.
+/// Of so many edits it is remembered what they cost.
+pub(crate) const EDITS_KEPT: usize = 64;
+
+/// How far a timeline looks ahead and back, and what it may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimelineSettings {
     /// How many frames are computed beyond the display's. 1 or more, default 100.
     pub lookahead: u32,
     /// How many frames before the display's are kept, for commands that come late and for scrubbing. Default 100.
     pub past: u32,
+    /// Most memory for states; `None` for as much as the frames need. Bytes. When it runs out, the oldest past goes first, then the
+    /// lookahead gets shorter (see [`Stats::memory_bound`]); the display's frame and the next are always kept. Default `None`.
+    pub bytes_max: Option<usize>,
     /// Edge of an area (a cell of the grid that says who is near). Metres, above 0; `None` chooses one from the bodies.
     pub area_m: Option<f32>,
+    /// Whether it is stored who touched whom, where and how hard; see [`Snapshot::contacts`](crate::Snapshot::contacts). Costs 44 bytes a
+    /// touching pair and frame in which something about it changes. Default `false`.
+    pub record_contacts: bool,
 }
 
 impl Default for TimelineSettings {
     fn default() -> Self {
-        TimelineSettings { lookahead: 100, past: 100, area_m: None }
+        TimelineSettings { lookahead: 100, past: 100, bytes_max: None, area_m: None, record_contacts: false }
     }
 }
 
@@ -43,70 +55,32 @@ pub enum Progress {
     Idle,
 }
 
-/// One frame of work.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Advance {
-    /// The frame whose states were computed.
-    pub frame: Frame,
-    /// Bodies that were advanced to it.
-    pub recomputed: u32,
-    /// Bodies whose state there is another one than before; of a new frame: that moved.
-    pub affected: u32,
-    /// Most slices that an island's frame was cut into.
-    pub slices_max: u32,
-    /// Whether the frame is a new one, beyond the old horizon.
-    pub extended: bool,
-}
-
-/// Sums of work.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Body-frames whose stored bits were replaced by others.
-    pub affected: u64,
-    /// Body-frames that were advanced.
-    pub recomputed: u64,
-    /// Frames that were worked on.
-    pub frames: u64,
-    /// Bodies that were stopped because their next state was not finite, each time it happened.
-    pub quarantined: u64,
-}
-
-/// What a timeline has done so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stats {
-    /// Work on new frames.
-    pub ahead: Counters,
-    /// Re-simulation, all together.
-    pub edits: Counters,
-    /// Re-simulation for the last batch of commands: those that came before everything was true again.
-    pub last_edit: Counters,
-    /// Commands in force that did nothing: their body was not there, or the result would not have been finite.
-    pub ignored: u64,
-    /// Most slices that an island's frame was cut into.
-    pub slices_max: u32,
-}
-
 /// All states of all bodies over frames, kept equal, bit for bit, to a full simulation with the same commands.
 ///
-/// A clone is a fork: it shares all states until they differ.
+/// A clone is a [fork](Timeline::fork): it shares all states until they differ.
 #[derive(Clone, Debug)]
 pub struct Timeline {
     pub(crate) settings: TimelineSettings,
-    display: Frame,
-    pub(crate) oldest: Frame,
-    /// The states at `oldest` and the frames after it; never empty.
-    pub(crate) tables: VecDeque<Arc<FrameTable>>,
+    pub(crate) display: Frame,
+    pub(crate) tables: Tables,
     pub(crate) definitions: Arc<Definitions>,
-    pub(crate) log: CommandLog,
+    pub(crate) log: Arc<CommandLog>,
+    pub(crate) undo: UndoLog,
     /// By frame below the horizon: what of the step that leaves it is out of date.
     pub(crate) stale: BTreeMap<Frame, Stale>,
     /// By frame: what its commands did.
-    pub(crate) effects: BTreeMap<Frame, FrameEffects>,
+    pub(crate) effects: Arc<BTreeMap<Frame, FrameEffects>>,
     pub(crate) areas: Areas,
     pub(crate) scratch: Scratch,
     /// Of the local user's next command.
     pub(crate) next_sequence: u64,
     pub(crate) stats: Stats,
+    /// The last edits; the last is the one that is being worked off, if any is.
+    pub(crate) edits: VecDeque<Edit>,
+    /// Whether the lookahead was cut for lack of memory since the display last moved.
+    pub(crate) shrunk: bool,
+    /// Whether past was forgotten for lack of memory that the number of frames would keep.
+    pub(crate) memory_cut: bool,
     pub(crate) mutation: Mutation,
     pub(crate) recompute_all: bool,
 }
@@ -138,16 +112,19 @@ impl Timeline {
         Ok(Timeline {
             settings: TimelineSettings { lookahead: settings.lookahead.max(1), ..settings },
             display: Frame(0),
-            oldest: Frame(0),
-            tables: VecDeque::from([Arc::new(FrameTable::new(&states))]),
+            tables: Tables::new(Frame(0), Arc::new(FrameTable::new(&states))),
             definitions: Arc::new(Definitions::new(made, environment)),
-            log: CommandLog::default(),
+            log: Arc::default(),
+            undo: UndoLog::default(),
             stale: BTreeMap::new(),
-            effects: BTreeMap::new(),
+            effects: Arc::default(),
             areas,
             scratch: Scratch::default(),
             next_sequence: 0,
             stats: Stats::default(),
+            edits: VecDeque::new(),
+            shrunk: false,
+            memory_cut: false,
             mutation: Mutation::None,
             recompute_all: false,
         })
@@ -158,28 +135,6 @@ impl Timeline {
         let names = self.definitions.names();
         Arc::make_mut(&mut self.definitions).reserve(names + 1);
         BodyId(names as u32)
-    }
-
-    /// Tells where the display is. Frames older than `past` before it are forgotten, unless the physics still needs them.
-    pub fn set_display(&mut self, frame: Frame) {
-        self.display = frame;
-        let wanted = frame.minus(u64::from(self.settings.past));
-        let oldest = wanted.min(self.valid_to().minus(1)).max(self.oldest);
-        let dropped = oldest.since(self.oldest) as usize;
-        if dropped == 0 {
-            return;
-        }
-        self.tables.drain(..dropped);
-        self.oldest = oldest;
-        let commanded = self.log.forget_to(oldest);
-        // Snapshots share the definitions: to touch them is to copy them, so only where there is something to forget.
-        if !commanded.is_empty() || self.definitions.has_gravity_before(oldest) {
-            Arc::make_mut(&mut self.definitions).forget_before(oldest, commanded.into_iter());
-        }
-        let kept = self.effects.split_off(&oldest.next());
-        let forgotten = std::mem::replace(&mut self.effects, kept);
-        self.stats.ignored += ignored(&forgotten);
-        self.areas.forget_before(oldest);
     }
 
     /// Where the display is.
@@ -202,13 +157,13 @@ impl Timeline {
     /// The oldest frame kept. Commands act after it.
     #[must_use]
     pub fn oldest(&self) -> Frame {
-        self.oldest
+        self.tables.oldest()
     }
 
     /// The last frame computed.
     #[must_use]
     pub fn horizon(&self) -> Frame {
-        self.oldest.plus(self.tables.len() as u64 - 1)
+        self.tables.horizon()
     }
 
     /// The last frame that is known to be true for all bodies.
@@ -220,8 +175,7 @@ impl Timeline {
     /// The stored state of a body, after the commands of the frame; `None` when there is none.
     #[must_use]
     pub fn state(&self, body: BodyId, frame: Frame) -> Option<&BodyState> {
-        let index = frame.0.checked_sub(self.oldest.0)?;
-        self.tables.get(index as usize)?.get(body)
+        self.tables.get(frame)?.get(body)
     }
 
     /// The body as it is from this frame to the next; `None` when it does not exist then.
@@ -239,7 +193,7 @@ impl Timeline {
     /// The bodies that are stored at a frame, in the order of their ids; none when the frame is not stored.
     #[must_use]
     pub fn bodies_at(&self, frame: Frame) -> Vec<BodyId> {
-        let table = frame.0.checked_sub(self.oldest.0).and_then(|index| self.tables.get(index as usize));
+        let table = self.tables.get(frame);
         table.into_iter().flat_map(|table| table.iter().map(|(body, _)| body)).collect()
     }
 
@@ -260,39 +214,43 @@ impl Timeline {
         self.log.iter()
     }
 
-    /// What has been done so far.
+    /// What has been done so far, and what is kept.
     #[must_use]
     pub fn stats(&self) -> Stats {
-        Stats { ignored: self.stats.ignored + ignored(&self.effects), ..self.stats }
+        Stats {
+            ignored: self.stats.ignored + ignored(&self.effects),
+            last_edit: self.edits.back().copied().unwrap_or_default(),
+            past_frames: self.display.since(self.oldest()),
+            lookahead_frames: self.horizon().since(self.display),
+            state_bytes: self.state_bytes(),
+            memory_bound: self.is_memory_bound(),
+            ..self.stats
+        }
+    }
+
+    /// What the last 64 batches of commands cost, the latest last: that one may not be worked off yet.
+    pub fn edits(&self) -> impl DoubleEndedIterator<Item = &Edit> {
+        self.edits.iter()
     }
 
     /// Memory of all stored states. Bytes.
     #[must_use]
     pub fn state_bytes(&self) -> usize {
-        let before = std::iter::once(None).chain(self.tables.iter().map(Some));
-        self.tables.iter().zip(before).map(|(table, before)| table.bytes_beyond(before)).sum()
+        self.tables.bytes()
     }
 
     pub(crate) fn table(&self, frame: Frame) -> &Arc<FrameTable> {
-        &self.tables[frame.since(self.oldest) as usize]
-    }
-
-    pub(crate) fn set_table(&mut self, frame: Frame, table: Arc<FrameTable>) {
-        self.tables[frame.since(self.oldest) as usize] = table;
+        self.tables.at(frame)
     }
 
     pub(crate) fn count(&mut self, done: &Advance, quarantined: u32) {
-        let add = |counters: &mut Counters| {
-            counters.affected += u64::from(done.affected);
-            counters.recomputed += u64::from(done.recomputed);
-            counters.frames += 1;
-            counters.quarantined += u64::from(quarantined);
-        };
         if done.extended {
-            add(&mut self.stats.ahead);
+            self.stats.ahead.add(done, quarantined);
         } else {
-            add(&mut self.stats.edits);
-            add(&mut self.stats.last_edit);
+            self.stats.edits.add(done, quarantined);
+            if let Some(edit) = self.edits.back_mut() {
+                edit.add(done);
+            }
         }
         self.stats.slices_max = self.stats.slices_max.max(done.slices_max);
     }
@@ -310,12 +268,13 @@ impl Timeline {
     }
 }
 
-fn ignored(effects: &BTreeMap<Frame, FrameEffects>) -> u64 {
+/// How many commands did nothing.
+pub(crate) fn ignored(effects: &BTreeMap<Frame, FrameEffects>) -> u64 {
     effects.values().flat_map(BTreeMap::values).map(|effect| u64::from(effect.ignored)).sum()
 }
 
 /// An edge of areas that suits the bodies: four times the radius of the middle one of those that move. Metres.
-fn area_edge<'a>(bodies: impl Iterator<Item = &'a Body>) -> f32 {
+pub(crate) fn area_edge<'a>(bodies: impl Iterator<Item = &'a Body>) -> f32 {
     let mut radii: Vec<f32> =
         bodies.filter(|b| b.is_dynamic() && b.radius.is_finite()).map(|b| b.radius).collect();
     radii.sort_unstable_by(f32::total_cmp);
@@ -357,7 +316,7 @@ mod tests {
     #[test]
     fn definitions_are_copied_only_where_there_is_something_to_forget() {
         let bodies = [BodyDef::new(Shape::Sphere(Sphere { radius: 0.5 }))];
-        let settings = TimelineSettings { lookahead: 20, past: 2, area_m: None };
+        let settings = TimelineSettings { lookahead: 20, past: 2, ..TimelineSettings::default() };
         let mut timeline = Timeline::new(&bodies, Environment::default(), settings).unwrap();
         timeline.change(Frame(8), Change::SetGravity { gravity: Vec3::X }).unwrap();
         timeline.change(Frame(10), Change::SetGravityScale { body: BodyId(0), scale: 0.5 }).unwrap();

@@ -5,22 +5,26 @@
 
 use std::sync::Arc;
 
-use forerun_dynamics::step::{Group, advance};
-use forerun_dynamics::{BodyId, BodyKind, BodyState, Observer, Stage};
+use forerun_dynamics::step::{Group, advance, advance_touching};
+use forerun_dynamics::{
+    BodyId, BodyKind, BodyState, Environment, Observer, Stage, StepReport, Touches, Unobserved,
+};
 
 use crate::Frame;
 use crate::affected::{Affected, Inputs, Mutation, affected};
 use crate::areas::Until;
-use crate::commanding::Arrival;
+use crate::commanding::{Arrival, FrameEffects};
 use crate::frame_table::Entry;
 use crate::stale::Stale;
-use crate::timeline::{Advance, Progress, Timeline};
+use crate::stats::Advance;
+use crate::timeline::{Progress, Timeline};
+use crate::touch_table::Told;
 
 impl Timeline {
     /// Computes one frame: the earliest that is out of date, or else a new one while the lookahead has room. Between two calls all
     /// frames up to [`valid_to`](Timeline::valid_to) are true, and commands may come.
     pub fn advance(&mut self) -> Progress {
-        self.advance_observed(&mut forerun_dynamics::Unobserved)
+        self.advance_observed(&mut Unobserved)
     }
 
     /// As [`Timeline::advance`], with an observer of the stages of the step.
@@ -33,7 +37,7 @@ impl Timeline {
             }
         }
         let horizon = self.horizon();
-        if horizon >= self.display().plus(u64::from(self.settings.lookahead)) {
+        if horizon >= self.display().plus(u64::from(self.settings.lookahead)) || !self.has_room() {
             return Progress::Idle;
         }
         let stale = self.stale_beyond_horizon();
@@ -94,11 +98,8 @@ impl Timeline {
         let group = affected(&inputs, out_of_date, &mut self.scratch);
         observer.after(Stage::Collisions);
 
-        let (next, report) = advance(
-            &Group { members: &group.members, pairs: &group.pairs, contacts: &group.contacts },
-            &definitions.environment(frame),
-            observer,
-        );
+        let environment = definitions.environment(frame);
+        let (next, report, touches) = self.step(frame, &group, &environment, observer);
         let is_last = arrival >= self.horizon();
         let arrived = Arrival {
             frame: arrival,
@@ -109,24 +110,33 @@ impl Timeline {
             ask_everybody: self.recompute_all,
         };
         let entries = entries(&group, &next, out_of_date);
-        let mut effects = self.effects.remove(&arrival).unwrap_or_default();
+        let outdated = stale.everyone.then(|| stored.touches());
+        let told = touches.map(|touches| Told::new(&entries, &group, &touches, table.touches(), outdated));
+        // Forks and later edits share the effects: to touch them is to copy.
+        let mut effects = match self.effects.contains_key(&arrival) {
+            true => Arc::make_mut(&mut self.effects).remove(&arrival).unwrap_or_default(),
+            false => FrameEffects::default(),
+        };
         let mut entries = arrived.apply_commands(entries, stale, &mut self.areas, &mut effects);
         if let Mutation::Tolerance(tolerance) = self.mutation {
             entries.retain(|(body, state)| !nearly(stored.get(*body), state.as_ref(), tolerance));
         }
         arrived.visit(&entries, &mut self.areas);
         if !effects.is_empty() {
-            self.effects.insert(arrival, effects);
+            Arc::make_mut(&mut self.effects).insert(arrival, effects);
         }
 
-        let (new, changed) = stored.with_entries(&entries, &table);
+        let (mut new, changed) = stored.with_entries(&entries, &table);
+        if let Some(told) = told {
+            new = new.with_touches(&told, &table);
+        }
         if extended {
-            self.tables.push_back(new);
+            self.tables.push(new);
         } else {
             if !changed.is_empty() && !is_last {
                 self.stale.entry(arrival).or_default().basis.get_or_insert(stored);
             }
-            self.set_table(arrival, new);
+            self.tables.set(arrival, new);
         }
         let due = group.members.iter().zip(&group.due).filter(|(_, due)| **due);
         let recomputed = due.filter(|(member, _)| member.body.kind != BodyKind::Fixed).count();
@@ -138,8 +148,43 @@ impl Timeline {
             extended,
         };
         self.count(&done, report.quarantined);
+        self.fit_memory();
         done
     }
+
+    /// The next states of a group, and where that is recorded, who touched whom.
+    fn step(
+        &self,
+        frame: Frame,
+        group: &Affected,
+        environment: &Environment,
+        observer: &mut dyn Observer,
+    ) -> (Vec<BodyState>, StepReport, Option<Touches>) {
+        let step = Group { members: &group.members, pairs: &group.pairs, contacts: &group.contacts };
+        if self.settings.record_contacts {
+            let mut touches = Touches::default();
+            let (next, report) = advance_touching(&step, environment, observer, &mut touches);
+            if frame == self.oldest() && touches.resting.contains(&true) {
+                touches = touches_of_all(&step, environment);
+            }
+            return (next, report, Some(touches));
+        }
+        let (next, report) = advance(&step, environment, observer);
+        (next, report, None)
+    }
+}
+
+/// What a step tells about touches when nothing counts as a fixpoint: the frame before may be none that tells.
+fn touches_of_all(step: &Group, environment: &Environment) -> Touches {
+    let mut members = step.members.to_vec();
+    for member in &mut members {
+        // The last frame of rest that is solved; nothing else reads the counter.
+        member.state.rest = member.state.rest.min(environment.settings.rest_frames());
+    }
+    let mut touches = Touches::default();
+    let step = Group { members: &members, ..*step };
+    let _ = advance_touching(&step, environment, &mut Unobserved, &mut touches);
+    touches
 }
 
 /// The next states of the due members, and `None` for the out-of-date bodies that do not exist. Sorted.

@@ -17,7 +17,7 @@ fn run(timeline: &mut Timeline) {
 }
 
 fn timeline(bodies: &[BodyDef], lookahead: u32) -> Timeline {
-    let settings = TimelineSettings { lookahead, past: 1000, area_m: None };
+    let settings = TimelineSettings { lookahead, past: 1000, ..TimelineSettings::default() };
     let mut timeline = Timeline::new(bodies, Environment::default(), settings).unwrap();
     run(&mut timeline);
     timeline
@@ -97,7 +97,7 @@ fn a_body_that_comes_and_goes_far_away_leaves_no_trace() {
 fn what_is_at_rest_costs_neither_work_nor_memory() {
     let mut environment = Environment::default();
     environment.settings.rest_seconds = 0.1;
-    let settings = TimelineSettings { lookahead: 400, past: 10, area_m: None };
+    let settings = TimelineSettings { lookahead: 400, past: 10, ..TimelineSettings::default() };
     let mut timeline = Timeline::new(&far_piles(), environment, settings).unwrap();
     let mut last = 0;
     while let Progress::Advanced(done) = timeline.advance() {
@@ -166,7 +166,7 @@ fn a_command_taken_back_leaves_no_trace() {
 
 #[test]
 fn the_lookahead_is_bounded_and_the_past_is_dropped() {
-    let settings = TimelineSettings { lookahead: 30, past: 5, area_m: None };
+    let settings = TimelineSettings { lookahead: 30, past: 5, ..TimelineSettings::default() };
     let mut timeline = Timeline::new(&far_piles(), Environment::default(), settings).unwrap();
     for display in 0..50 {
         timeline.set_display(Frame(display));
@@ -263,7 +263,8 @@ fn kinds_change_and_fixed_bodies_stay() {
 
 #[test]
 fn areas_are_active_where_something_moves() {
-    let settings = TimelineSettings { lookahead: 10, past: 10, area_m: Some(4.0) };
+    let settings =
+        TimelineSettings { lookahead: 10, past: 10, area_m: Some(4.0), ..TimelineSettings::default() };
     let mut faller = cube(2.0, 202.0);
     faller.pose.position.z = 2.0;
     faller.gravity_scale = 0.0;

@@ -2,20 +2,31 @@
 //!
 //! *Architecture invariant:* this is the lowest floor that knows a thread or a clock; see README.md beside the rooms.
 
+mod blend;
 mod clock;
 mod coupled;
 mod decoupled;
 mod direct_change;
 mod driver_error;
+mod fork;
 mod frame_notes;
+mod hearing;
+mod pace;
 mod physics;
+mod picture;
 mod reach;
+mod refusal;
 mod threads;
 
+pub use blend::{Blending, Offset};
 pub use clock::Clock;
 pub use coupled::{Coupled, StepLimits};
-pub use decoupled::{Decoupled, DecoupledSettings, Picture};
+pub use decoupled::{Decoupled, DecoupledSettings};
 pub use direct_change::ChangeError;
 pub use driver_error::DriverError;
+pub use fork::Fork;
 pub use frame_notes::FrameNote;
+pub use physics::Hinder;
+pub use picture::Picture;
+pub use refusal::{AdoptError, Refusal};
 pub use threads::{Threads, ThreadsError};

@@ -48,7 +48,7 @@
 //! let mut samples = Vec::new();
 //! for _ in 0..3 {
 //!     let picture = physics.show(clock.now().as_secs_f64())?;
-//!     picture.snapshot.sample_all(picture.time_s, &mut samples);
+//!     physics.sample_all(&picture, &mut samples);
 //!     for (body, sample) in &samples {
 //!         // draw(body, sample.pose)
 //! #       let _ = (body, sample);
@@ -66,6 +66,7 @@
 
 mod driver;
 mod playback;
+pub mod recording;
 mod staging;
 
 pub use forerun_dynamics as dynamics;
@@ -74,8 +75,8 @@ pub use forerun_scene as scene;
 pub use forerun_timeline as timeline;
 
 pub use driver::{
-    ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, FrameNote, Picture, StepLimits,
-    Threads, ThreadsError,
+    AdoptError, Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, Fork,
+    FrameNote, Hinder, Offset, Picture, Refusal, StepLimits, Threads, ThreadsError,
 };
 pub use forerun_dynamics::{
     Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, Mass, Material,
@@ -85,9 +86,11 @@ pub use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Sphere};
 pub use forerun_geometry::{Pose, Quat, Shape, Vec3};
 pub use forerun_scene::{Scene, SceneError};
 pub use forerun_timeline::{
-    Change, Command, CommandError, CommandKey, Frame, Sample, Snapshot, Timeline, TimelineSettings,
+    Change, Command, CommandError, CommandKey, Frame, Keep, Order, Sample, Snapshot, Timeline,
+    TimelineSettings,
 };
 pub use playback::{
     DriverKind, Playback, PlaybackError, PlaybackSettings, QueueRow, Report, play, write_queue_csv,
 };
+pub use recording::{Recorder, Recording, RecordingError, load_timeline, save_timeline};
 pub use staging::{StagingError, timeline_of, world_of};

@@ -8,6 +8,7 @@ use super::blocks::{Block, arrange};
 use super::bodies::Bodies;
 use super::collisions::{Moving, resolve_collisions};
 use super::contact_graph::ContactGraph;
+use super::impulses::{ImpulseSums, add_substep};
 use super::islands::Islands;
 use super::load::{Load, LoadPass, Strain};
 use super::positions::moved;
@@ -37,6 +38,8 @@ pub(crate) struct Batch<'a> {
     pub(crate) contacts: Vec<Contact>,
     /// `settings.frame_seconds` is the length of the slice.
     pub(crate) environment: Environment,
+    /// By contact; see [`Batch::record_impulses`].
+    pub(crate) impulses: ImpulseSums,
     bodies: Bodies,
     dynamic: Vec<bool>,
     islands: Islands,
@@ -63,6 +66,7 @@ impl<'a> Batch<'a> {
             members,
             contacts,
             environment,
+            impulses: Vec::new(),
             bodies: Bodies::default(),
             dynamic,
             islands,
@@ -72,6 +76,11 @@ impl<'a> Batch<'a> {
             spins: Vec::new(),
             bounces,
         }
+    }
+
+    /// Has what contacts push with added up. The classic shock propagation's impulses, which act on velocities, are not among it.
+    pub(crate) fn record_impulses(&mut self) {
+        self.impulses = vec![[0.0; 4]; self.contacts.len()];
     }
 
     fn substep_seconds(&self) -> f32 {
@@ -146,7 +155,7 @@ impl<'a> Batch<'a> {
         let mut kicks: Vec<Row> = self.bodies.accelerations.iter().map(|a| Row(a.0.map(|x| x * h))).collect();
         kicks.push(Row::default());
         let mut before = Vec::new();
-        let (blocks, bodies) = (&mut self.blocks, &mut self.bodies);
+        let (blocks, bodies, impulses) = (&mut self.blocks, &mut self.bodies, &mut self.impulses);
         let standing = StandingPass {
             guard: &guard,
             kicks: &kicks,
@@ -157,7 +166,7 @@ impl<'a> Batch<'a> {
         standing.run(&mut blocks[self.easy_blocks..]);
         for substep in 0..settings.substeps {
             if self.bounces {
-                resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings));
+                resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings, impulses));
             }
             for (velocity, kick) in bodies.velocities.iter_mut().zip(&kicks) {
                 for k in 0..6 {
@@ -176,7 +185,8 @@ impl<'a> Batch<'a> {
             }
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);
-            relax(blocks, &mut moving(bodies, &kicks, &settings), self.bounces);
+            relax(blocks, &mut moving(bodies, &kicks, &settings, &mut []), self.bounces);
+            add_substep(impulses, blocks);
             if settings.shock_propagation == ShockPropagation::Classic {
                 propagate_classic(blocks, &mut bodies.velocities, &bodies.displacements, h);
             }
@@ -245,13 +255,19 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
 }
 
 /// What the kernels that look ahead need of the bodies.
-fn moving<'a>(bodies: &'a mut Bodies, kicks: &'a [Row], settings: &StepSettings) -> Moving<'a> {
+fn moving<'a>(
+    bodies: &'a mut Bodies,
+    kicks: &'a [Row],
+    settings: &StepSettings,
+    bounced: &'a mut [[f32; 4]],
+) -> Moving<'a> {
     Moving {
         velocities: &mut bodies.velocities,
         displacements: &bodies.displacements,
         kicks,
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
+        bounced,
     }
 }
 

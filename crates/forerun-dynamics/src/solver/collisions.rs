@@ -4,6 +4,7 @@
 //! does not bounce, whatever its restitution. What gravity adds in one frame counts as rest: a speed that shrinks with the frame, no threshold of its own.
 
 use super::blocks::Block;
+use super::impulses;
 use super::sweep::{Sides, friction};
 use crate::lanes::{LaneMask, Lanes, Row, dispatched};
 
@@ -21,6 +22,8 @@ pub(crate) struct Moving<'a> {
     pub(crate) substep_seconds: f32,
     /// How many substeps a frame has.
     pub(crate) substeps: f32,
+    /// Where bounces are added up; empty where nobody asks.
+    pub(crate) bounced: &'a mut [[f32; 4]],
 }
 
 dispatched! {
@@ -74,7 +77,11 @@ fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
         return false;
     }
     let targets = Targets { hits, speeds: target, sum: target_sum, all };
-    let sum = bounce(block, &mut v, &targets);
+    let impulses = bounce(block, &mut v, &targets);
+    if !moving.bounced.is_empty() {
+        impulses::add(moving.bounced, &block.source, &impulses);
+    }
+    let sum = impulses[0] + impulses[1] + impulses[2] + impulses[3];
     // Friction of the collision alone: the impulses of the contacts are kept apart.
     let (tangents, twist) = (block.friction.impulses, block.friction.twist_impulse);
     block.friction.impulses = [F::zero(); 2];
@@ -96,9 +103,9 @@ struct Targets<F> {
     all: F,
 }
 
-/// Normal impulses towards the target speeds. Returns their sum.
+/// Normal impulses towards the target speeds.
 #[inline(always)]
-fn bounce<F: Lanes>(block: &Block<F>, v: &mut Sides<F>, targets: &Targets<F>) -> F {
+fn bounce<F: Lanes>(block: &Block<F>, v: &mut Sides<F>, targets: &Targets<F>) -> [F; 4] {
     let Targets { hits, speeds: target, .. } = targets;
     let row = block.centre_jacobian();
     let centre = &block.centre;
@@ -119,5 +126,5 @@ fn bounce<F: Lanes>(block: &Block<F>, v: &mut Sides<F>, targets: &Targets<F>) ->
             impulses[q] = impulse;
         }
     }
-    impulses[0] + impulses[1] + impulses[2] + impulses[3]
+    impulses
 }

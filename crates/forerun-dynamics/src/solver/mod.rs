@@ -9,6 +9,7 @@ mod bodies;
 mod collisions;
 mod contact_graph;
 mod flight;
+mod impulses;
 mod islands;
 mod load;
 mod overlap;

@@ -19,6 +19,7 @@ mod cylinder;
 mod gjk;
 mod half_space;
 mod mesh;
+mod overlap;
 mod passing;
 mod penetration;
 mod reduce;

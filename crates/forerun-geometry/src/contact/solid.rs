@@ -50,6 +50,11 @@ impl<'a> Solid<'a> {
         Some(Solid { core, centre: pose.position - origin, axes: pose.axes(), radius })
     }
 
+    /// A hull in its own frame.
+    pub(super) fn of_hull(hull: &'a Hull) -> Self {
+        Solid { core: Core::Hull(hull), centre: Vec3::ZERO, axes: Mat3::IDENTITY, radius: 0.0 }
+    }
+
     /// Where its frame is.
     pub(super) fn centre(&self) -> Vec3 {
         self.centre

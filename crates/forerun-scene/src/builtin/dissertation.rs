@@ -9,8 +9,8 @@ use crate::{BodyEntry, CommandEntry, MeshEntry, Scene};
 
 /// Half extents of a domino: its thin side looks along the row.
 const DOMINO: Vec3 = Vec3::new(0.05, 0.25, 0.125);
-/// From one domino to the next along the spiral. Metres.
-const DOMINO_STEP: f32 = 0.2;
+/// From one domino to the next along the row. Metres.
+pub(super) const DOMINO_STEP: f32 = 0.2;
 /// The innermost domino turns about its leading bottom edge. rad/s; at 3 rad/s some engines' wave never starts.
 const TIP_SPEED: f32 = 6.0;
 
@@ -24,24 +24,25 @@ pub(super) fn dominoes(count: u32) -> Scene {
     scene.put(ground());
     let mut spiral = Spiral::new();
     for i in 0..count {
-        scene.put(domino(&spiral, i == 0));
+        let (foot, along) = (spiral.point(), spiral.tangent());
+        let body = domino(foot, along);
+        scene.put(if i == 0 { tipped(body, along) } else { body });
         spiral.advance(DOMINO_STEP);
     }
     scene
 }
 
-fn domino(spiral: &Spiral, tipped: bool) -> BodyEntry {
-    let along = spiral.tangent();
+/// A domino that stands on `foot` and faces `along`, a level unit vector.
+pub(super) fn domino(foot: Vec3, along: Vec3) -> BodyEntry {
     let yaw = libm::atan2f(-along.z, along.x);
-    let body = cuboid(DOMINO.x, DOMINO.y, DOMINO.z)
-        .at(spiral.point() + Vec3::Y * DOMINO.y)
-        .turned(turn(Vec3::Y, yaw));
-    if !tipped {
-        return body;
-    }
+    cuboid(DOMINO.x, DOMINO.y, DOMINO.z).at(foot + Vec3::Y * DOMINO.y).turned(turn(Vec3::Y, yaw))
+}
+
+/// The domino turns about its leading bottom edge, as if it had been tipped.
+pub(super) fn tipped(domino: BodyEntry, along: Vec3) -> BodyEntry {
     let spin = Vec3::Y.cross(along) * TIP_SPEED;
     let from_edge = Vec3::Y * DOMINO.y - along * DOMINO.x;
-    body.moving(spin.cross(from_edge)).spinning(spin)
+    domino.moving(spin.cross(from_edge)).spinning(spin)
 }
 
 /// An Archimedean spiral about the y axis: arms 0.8 m apart, from a radius of 2 m outwards.

@@ -4,6 +4,7 @@
 
 mod dissertation;
 mod flying;
+mod groups;
 mod noise;
 mod parts;
 mod piles;
@@ -76,6 +77,13 @@ static BUILT_INS: &[BuiltIn] = &[
     sized("rain", (1000, 100_000, "bodies"), "Balls, boxes and capsules fall into a pit", piles::rain),
     sized("rings", (500, 5000, "rings"), "Rings fall over 25 poles", piles::rings),
     sized("tori", (50, 10_000, "rings"), "Rings of 1536 triangles fall on a heap", piles::tori),
+    sized("domino_lines", (40, 1000, "lines"), "Lines of 25 dominoes that never meet", groups::domino_lines),
+    sized("walls", (20, 1000, "piles"), "Piles with thin walls between them", groups::walls),
+    sized("break", (4, 50, "rows of balls"), "A break on a billiard table", groups::billiard_break),
+    single("meeting", "Two groups that meet after 5 s, and a third that never does", groups::meeting),
+    sized("chain", (8, 100, "links"), "A chain of rings swings into a heap", groups::chain),
+    sized("pile", (1000, 100_000, "boxes"), "Boxes in a pit, one heap that comes to rest", groups::pile),
+    sized("hail", (500, 10_000, "balls"), "Elastic balls at 50 m/s between thin walls", groups::hail),
     sized("cradle", (5, 1000, "balls"), "A row of elastic balls between two walls", structures::cradle),
     single("slope", "Blocks of different friction on a ramp", structures::slope),
     sized(

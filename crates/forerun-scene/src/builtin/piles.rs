@@ -164,7 +164,7 @@ pub(super) fn tori(count: u32) -> Scene {
 }
 
 /// Side of the smallest square of cells that holds `count`.
-fn square_side(count: u32) -> u32 {
+pub(super) fn square_side(count: u32) -> u32 {
     let mut side = 1;
     while side * side < count {
         side += 1;
@@ -173,7 +173,7 @@ fn square_side(count: u32) -> u32 {
 }
 
 /// The `i`th of `count` places one apart whose middle is 0.
-fn centred(i: u32, count: u32) -> f32 {
+pub(super) fn centred(i: u32, count: u32) -> f32 {
     i as f32 - 0.5 * (count - 1) as f32
 }
 

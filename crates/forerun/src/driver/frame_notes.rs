@@ -12,11 +12,13 @@ use crate::Frame;
 pub struct FrameNote {
     /// Most slices that an island's frame was cut into, any time that it was computed; 1 when none was.
     pub slices_max: u8,
-    /// Areas in which a body moved.
-    pub areas_active: u32,
+    /// Areas in which a body moved; none unless [`DecoupledSettings::count_areas`](crate::DecoupledSettings::count_areas) asks for it.
+    pub areas_active: Option<u32>,
 }
 
 const AREAS_BITS: u32 = 24;
+/// What stands for areas that were not counted; so many are counted as one less.
+const NOT_COUNTED: u32 = (1 << AREAS_BITS) - 1;
 const SLICES_BITS: u32 = 8;
 
 /// The notes of the last frames.
@@ -35,7 +37,7 @@ impl FrameNotes {
     /// Only the physics thread writes. A frame that is computed again keeps the most slices: those islands that were cut may not have been among
     /// those computed again.
     pub(crate) fn write(&self, frame: Frame, note: FrameNote) {
-        let areas = u64::from(note.areas_active.min((1 << AREAS_BITS) - 1));
+        let areas = u64::from(note.areas_active.map_or(NOT_COUNTED, |areas| areas.min(NOT_COUNTED - 1)));
         let before = self.read(frame).map_or(1, |before| before.slices_max);
         let slices = u64::from(note.slices_max.max(before));
         let word = tag(frame) << (AREAS_BITS + SLICES_BITS) | slices << AREAS_BITS | areas;
@@ -47,7 +49,9 @@ impl FrameNotes {
         let word = self.ring[self.place(frame)].load(Ordering::Relaxed);
         let slices_max = (word >> AREAS_BITS) as u8;
         let written = slices_max != 0 && word >> (AREAS_BITS + SLICES_BITS) == tag(frame);
-        written.then_some(FrameNote { slices_max, areas_active: word as u32 & ((1 << AREAS_BITS) - 1) })
+        let areas = word as u32 & ((1 << AREAS_BITS) - 1);
+        let areas_active = (areas != NOT_COUNTED).then_some(areas);
+        written.then_some(FrameNote { slices_max, areas_active })
     }
 
     fn place(&self, frame: Frame) -> usize {
@@ -66,23 +70,28 @@ mod tests {
     #[test]
     fn a_frame_that_is_computed_again_keeps_its_most_slices() {
         let notes = FrameNotes::with_capacity(4);
-        notes.write(Frame(2), FrameNote { slices_max: 8, areas_active: 77 });
-        notes.write(Frame(2), FrameNote { slices_max: 2, areas_active: 5 });
-        assert_eq!(notes.read(Frame(2)), Some(FrameNote { slices_max: 8, areas_active: 5 }));
-        notes.write(Frame(6), FrameNote { slices_max: 2, areas_active: 5 });
-        assert_eq!(notes.read(Frame(6)), Some(FrameNote { slices_max: 2, areas_active: 5 }));
+        notes.write(Frame(2), FrameNote { slices_max: 8, areas_active: Some(77) });
+        notes.write(Frame(2), FrameNote { slices_max: 2, areas_active: Some(5) });
+        assert_eq!(notes.read(Frame(2)), Some(FrameNote { slices_max: 8, areas_active: Some(5) }));
+        notes.write(Frame(6), FrameNote { slices_max: 2, areas_active: Some(5) });
+        assert_eq!(notes.read(Frame(6)), Some(FrameNote { slices_max: 2, areas_active: Some(5) }));
     }
 
     #[test]
     fn a_note_is_read_as_written_until_the_ring_comes_round() {
         let notes = FrameNotes::with_capacity(4);
-        let note = FrameNote { slices_max: 8, areas_active: 77 };
+        let note = FrameNote { slices_max: 8, areas_active: Some(77) };
         assert_eq!(notes.read(Frame(0)), None);
         notes.write(Frame(2), note);
         assert_eq!(notes.read(Frame(2)), Some(note));
         assert_eq!(notes.read(Frame(6)), None);
-        notes.write(Frame(6), FrameNote { slices_max: 0, areas_active: u32::MAX });
+        notes.write(Frame(6), FrameNote { slices_max: 0, areas_active: Some(u32::MAX) });
         assert_eq!(notes.read(Frame(2)), None);
-        assert_eq!(notes.read(Frame(6)), Some(FrameNote { slices_max: 1, areas_active: (1 << 24) - 1 }));
+        assert_eq!(
+            notes.read(Frame(6)),
+            Some(FrameNote { slices_max: 1, areas_active: Some((1 << 24) - 2) })
+        );
+        notes.write(Frame(7), FrameNote { slices_max: 1, areas_active: None });
+        assert_eq!(notes.read(Frame(7)), Some(FrameNote { slices_max: 1, areas_active: None }));
     }
 }

@@ -1,6 +1,6 @@
 //! Physics: the thread that owns the working timeline.
 //!
-//! The loop is a short story: hear commands, learn where the display is, compute the earliest frame that is out of date, publish; or
+//! The loop is a short story: hear what the display says, learn where the display is, compute the earliest frame that is out of date, publish; or
 //! sleep when there is nothing to do. It never spins: whoever gives it something to do wakes it, and a wake that comes before the
 //! sleep is not lost (`std::thread::park` keeps it).
 
@@ -13,14 +13,17 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
 
 use arc_swap::ArcSwap;
-use forerun_timeline::{Command, CommandError, CommandKey, Frame, Progress, Snapshot, Stats, Timeline};
+use forerun_timeline::{Frame, Progress, Snapshot, Stats, Timeline};
 
+use super::fork::Fork;
 use super::frame_notes::{FrameNote, FrameNotes};
+use super::hearing::{Heard, Message};
 use super::reach::Reach;
-use crate::Threads;
+use super::refusal::Refusal;
+use crate::{Recorder, Threads};
 
 /// Done after every computed frame.
-pub(super) type Hinder = Box<dyn FnMut() + Send>;
+pub type Hinder = Box<dyn FnMut() + Send>;
 
 /// What the physics thread last made known, as one immutable whole.
 #[derive(Debug)]
@@ -43,6 +46,8 @@ pub(super) struct Shared {
     /// Pictures asked for so far.
     pictures: AtomicU64,
     stopping: AtomicBool,
+    /// Whether physics has done all that it may for what the display last told it.
+    done: AtomicBool,
     sleeper: OnceLock<Thread>,
 }
 
@@ -59,9 +64,10 @@ impl Shared {
             notes: FrameNotes::with_capacity(notes_kept),
             panic: Mutex::new(None),
             dropped_to: AtomicU64::new(u64::MAX),
-            display: AtomicU64::new(0),
+            display: AtomicU64::new(timeline.display().0),
             pictures: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
+            done: AtomicBool::new(false),
             sleeper: OnceLock::new(),
         }
     }
@@ -71,7 +77,14 @@ impl Shared {
         // Unparking orders these stores before what the woken thread reads; a busy one reads them a frame later, which is soon enough.
         self.display.store(frame.0, Ordering::Relaxed);
         self.pictures.fetch_add(1, Ordering::Relaxed);
+        // Physics that is not even given a processor has not done its work.
+        self.done.store(false, Ordering::Relaxed);
         self.wake();
+    }
+
+    /// Whether physics waits for the display.
+    pub(super) fn is_physics_done(&self) -> bool {
+        self.done.load(Ordering::Relaxed)
     }
 
     /// How far back commands have thrown the physics since the last call; none when no command came.
@@ -98,14 +111,20 @@ impl Shared {
 pub(super) struct Physics {
     pub(super) timeline: Timeline,
     pub(super) shared: Arc<Shared>,
-    pub(super) commands: Receiver<Command>,
-    pub(super) refusals: SyncSender<(CommandKey, CommandError)>,
-    /// Commands heard at a time, so that a flood of them cannot keep physics from its work.
+    pub(super) messages: Receiver<Message>,
+    pub(super) refusals: SyncSender<Refusal>,
+    pub(super) forks: SyncSender<Fork>,
+    pub(super) heard: Heard,
+    /// Messages heard at a time, so that a flood of them cannot keep physics from its work.
     pub(super) command_capacity: usize,
+    pub(super) count_areas: bool,
     pub(super) reach: Reach,
+    /// Whether all was done at some moment since the last commands came.
+    pub(super) caught_up: bool,
     /// Pictures that the reach has grown for.
     pub(super) pictures: u64,
     pub(super) hinder: Hinder,
+    pub(super) recorder: Option<Recorder>,
 }
 
 /// Starts the thread; returns once it can be woken.
@@ -134,18 +153,26 @@ pub(super) fn spawn(mut physics: Physics, threads: Threads) -> io::Result<JoinHa
 impl Physics {
     fn run(&mut self) {
         while !self.shared.stopping.load(Ordering::Relaxed) {
-            self.hear_commands();
+            self.hear();
             self.learn_display();
             match self.advance() {
                 Progress::Advanced(advance) => {
                     let slices_max = u8::try_from(advance.slices_max).unwrap_or(u8::MAX);
-                    let areas_active = self.timeline.areas_active(advance.frame);
+                    let areas_active = self.count_areas.then(|| self.timeline.areas_active(advance.frame));
                     self.shared.notes.write(advance.frame, FrameNote { slices_max, areas_active });
                     (self.hinder)();
                     self.publish();
                 }
-                Progress::Idle => std::thread::park(),
+                Progress::Idle => {
+                    self.caught_up = true;
+                    self.shared.done.store(true, Ordering::Relaxed);
+                    std::thread::park();
+                    self.shared.done.store(false, Ordering::Relaxed);
+                }
             }
+        }
+        if let Some(recorder) = &self.recorder {
+            recorder.mark(&self.timeline);
         }
     }
 
@@ -156,6 +183,9 @@ impl Physics {
         if pictures != self.pictures {
             self.pictures = pictures;
             self.reach.grow();
+            if let Some(recorder) = &self.recorder {
+                recorder.mark_when_due(&self.timeline);
+            }
         }
     }
 
@@ -165,22 +195,51 @@ impl Physics {
         if self.timeline.valid_to() >= reached { Progress::Idle } else { self.timeline.advance() }
     }
 
-    /// Takes the commands that wait.
-    fn hear_commands(&mut self) {
-        let heard: Vec<Command> = self.commands.try_iter().take(self.command_capacity).collect();
-        if heard.is_empty() {
-            return;
-        }
-        for command in heard {
-            let key = command.key;
-            if let Err(error) = self.timeline.submit(command) {
-                // When it is full, nobody has asked for refusals for a whole queue's length, and nobody wants this one either.
-                let _ = self.refusals.try_send((key, error));
+    /// Takes the messages that wait.
+    fn hear(&mut self) {
+        let messages: Vec<Message> = self.messages.try_iter().take(self.command_capacity).collect();
+        let (mut changed, mut adopted) = (false, false);
+        for message in messages {
+            match message {
+                Message::Obey(order) => {
+                    changed = true;
+                    let refused = self.heard.obey(&mut self.timeline, order).err();
+                    self.refuse(refused);
+                }
+                // When nobody takes the forks that there are, nobody wants this one either.
+                Message::Fork => drop(self.forks.try_send(self.heard.fork(&self.timeline))),
+                Message::Adopt(fork) => {
+                    changed = true;
+                    match self.heard.adopt(&mut self.timeline, *fork) {
+                        Ok(refused) => {
+                            adopted = true;
+                            self.refuse(refused);
+                        }
+                        Err(error) => self.refuse([Refusal::Adopt(error)]),
+                    }
+                }
             }
         }
-        self.reach.shorten();
-        self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
-        self.publish();
+        match &self.recorder {
+            Some(recorder) if adopted => recorder.restart(&self.timeline),
+            Some(recorder) if changed => recorder.follow(&self.timeline),
+            _ => {}
+        }
+        if changed {
+            // What is thrown away then was computed in time that nobody else wanted.
+            if !std::mem::take(&mut self.caught_up) {
+                self.reach.shorten();
+            }
+            self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
+            self.publish();
+        }
+    }
+
+    fn refuse(&self, refusals: impl IntoIterator<Item = Refusal>) {
+        for refusal in refusals {
+            // When it is full, nobody has asked for refusals for a whole queue's length, and nobody wants this one either.
+            let _ = self.refusals.try_send(refusal);
+        }
     }
 
     fn publish(&self) {

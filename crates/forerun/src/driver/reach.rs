@@ -1,8 +1,8 @@
 //! Reach: how far ahead physics computes while the user keeps changing things.
 //!
 //! A user who drags a body changes it on every picture, and each change throws away what was computed after it (the dissertation's closing
-//! remark, chapter 6). So each batch of commands shortens the reach, and each picture lets it grow again: a single push costs a few pictures of
-//! a shorter queue, a long drag keeps it short.
+//! remark, chapter 6). So each batch of commands that comes before physics was through with the one before shortens the reach, and each picture
+//! lets it grow again: a drag that costs little keeps the queue full, one that costs much keeps it short, and a single push does nothing to it.
 
 /// Frames ahead that are worth computing now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ impl Reach {
         self.frames
     }
 
-    /// Commands came.
+    /// Commands came before all was done.
     pub(super) fn shorten(&mut self) {
         self.frames = (self.frames / 4).max(FRAMES_MIN.min(self.full));
     }

@@ -35,19 +35,30 @@ pub struct QueueRow {
     pub interval_ms: f64,
     /// Time that the display spent on physics for this picture: T_C of the coupled driver, sampling for the decoupled. Milliseconds.
     pub wait_ms: f64,
+    /// How fast display time went since the picture before, against real time: below 1 where physics was late and the clock was slowed,
+    /// at most 1.05 where lost time is made good; 1 for the coupled driver, which has no clock of its own.
+    pub clock_rate: f64,
 }
 
 impl QueueRow {
     /// The header of `queue.csv`.
     pub const HEADER: &str = "time_real_s,time_display_s,time_physics_s,queue_min,queue_max,slices_max,areas_active,recomputed,\
-                              computed,starved,time_step_s,queue_low,time_physics_low_s,interval_ms,wait_ms";
+                              computed,starved,time_step_s,queue_low,time_physics_low_s,interval_ms,wait_ms,clock_rate";
+
+    /// Whether physics was late for this picture: a body had no state for its time, or the clock was slowed to wait for one.
+    #[must_use]
+    pub fn is_starved(&self) -> bool {
+        // Less is rounding.
+        const FULL_RATE: f64 = 1.0 - 1e-6;
+        self.starved > 0 || self.clock_rate < FULL_RATE
+    }
 
     fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         write!(out, "{:.6},{:.6},{:.6},", self.time_real_s, self.time_display_s, self.time_physics_s)?;
         write!(out, "{},{},{},", self.queue_min, self.queue_max, self.slices_max)?;
         write!(out, "{},{},{},{},", self.areas_active, self.recomputed, self.computed, self.starved)?;
         write!(out, "{:.6},{},{:.6},", self.time_step_s, self.queue_low, self.time_physics_low_s)?;
-        writeln!(out, "{:.3},{:.3}", self.interval_ms, self.wait_ms)
+        writeln!(out, "{:.3},{:.3},{:.4}", self.interval_ms, self.wait_ms, self.clock_rate)
     }
 }
 
@@ -71,7 +82,7 @@ mod tests {
         write_queue_csv(&[row, row], &mut out).expect("a Vec takes everything");
         let text = String::from_utf8(out).expect("digits and commas");
         let fields: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
-        assert_eq!(fields, [15, 15, 15]);
+        assert_eq!(fields, [16, 16, 16]);
         assert!(
             text.lines().nth(1).is_some_and(|line| line.starts_with("0.500000,0.000000,0.000000,0,100,"))
         );

@@ -9,6 +9,7 @@ use forerun_timeline::{Certainty, Change, Frame, Sample, TimelineSettings};
 use super::log::QueueRow;
 use super::settings::{DriverKind, PlaybackError, PlaybackSettings};
 use crate::driver::{Clock, Coupled, Decoupled, DecoupledSettings, DriverError, StepLimits, Threads};
+use crate::recording::Recorder;
 use crate::staging::{TimedChange, bare_timeline_of, changes_of, world_of};
 use crate::{BodyId, Pose};
 
@@ -72,6 +73,13 @@ impl Show {
         }
     }
 
+    /// Ends the show, and completes the record of it.
+    pub(super) fn finish(self) -> Result<(), PlaybackError> {
+        let Show::Decoupled(DecoupledShow { driver, recorder, .. }) = self else { return Ok(()) };
+        drop(driver);
+        Ok(recorder.map_or(Ok(()), |recorder| recorder.finish())?)
+    }
+
     /// Where the bodies were in the last picture.
     pub(super) fn poses(&self) -> Vec<(BodyId, Pose)> {
         match self {
@@ -93,6 +101,7 @@ pub(super) struct DecoupledShow {
     samples: Vec<(BodyId, Sample)>,
     computed: u64,
     recomputed: u64,
+    recorder: Option<Recorder>,
 }
 
 impl DecoupledShow {
@@ -103,21 +112,26 @@ impl DecoupledShow {
     ) -> Result<Self, PlaybackError> {
         let lookahead = TimelineSettings { lookahead: settings.lookahead, ..TimelineSettings::default() };
         let timeline = bare_timeline_of(scene, lookahead)?;
-        let slow_down = settings.slow_down;
-        let mut driver =
-            Decoupled::start(timeline, DecoupledSettings { slow_down, ..DecoupledSettings::new(threads) })?;
+        let recorder = settings.record.as_ref().map(|path| Recorder::create(path, &timeline)).transpose()?;
+        let how = DecoupledSettings {
+            slow_down: settings.slow_down,
+            count_areas: true,
+            recorder: recorder.clone(),
+            ..DecoupledSettings::new(threads)
+        };
+        let mut driver = Decoupled::start(timeline, how)?;
         // The scene numbers the bodies that its commands add after those that are there at first, and so do we.
         for _ in script.iter().filter(|c| matches!(c.change, Change::Add { .. })) {
             driver.reserve_body();
         }
         let scene = scene.name.clone();
-        Ok(DecoupledShow { driver, script, scene, samples: Vec::new(), computed: 0, recomputed: 0 })
+        Ok(DecoupledShow { driver, script, scene, samples: Vec::new(), computed: 0, recomputed: 0, recorder })
     }
 
     fn picture(&mut self, real_s: f64) -> Result<QueueRow, PlaybackError> {
         let picture = self.driver.show(real_s)?;
         let snapshot = &picture.snapshot;
-        snapshot.sample_all(picture.time_s, &mut self.samples);
+        self.driver.sample_all(&picture, &mut self.samples);
         let starved = self.samples.iter().filter(|(_, s)| s.certainty > Certainty::Presumed).count();
         let physics_s = snapshot.valid_to().seconds(snapshot.frame_seconds());
         let slices_max = picture.note.map_or(1, |note| u32::from(note.slices_max));
@@ -134,7 +148,8 @@ impl DecoupledShow {
             starved: starved as u32,
             slices_max,
             time_step_s: f64::from(snapshot.frame_seconds()) / f64::from(slices_max),
-            areas_active: picture.note.map_or(0, |note| note.areas_active),
+            areas_active: picture.note.and_then(|note| note.areas_active).unwrap_or(0),
+            clock_rate: picture.rate,
             computed: ahead + edits - self.computed,
             recomputed: edits - self.recomputed,
             ..QueueRow::default()
@@ -155,8 +170,8 @@ impl DecoupledShow {
             };
         }
         match self.driver.refusals().into_iter().next() {
-            Some((_, error)) => {
-                Err(PlaybackError::Change { scene: self.scene.clone(), message: error.to_string() })
+            Some(refusal) => {
+                Err(PlaybackError::Change { scene: self.scene.clone(), message: refusal.to_string() })
             }
             None => Ok(()),
         }
@@ -190,6 +205,7 @@ impl CoupledShow {
             time_display_s: time_s,
             time_physics_s: time_s,
             time_physics_low_s: time_s,
+            clock_rate: 1.0,
             slices_max,
             time_step_s: (time_s - before_s) / f64::from(slices_max),
             computed: if time_s > before_s { self.driver.world().bodies().len() as u64 } else { 0 },
