@@ -41,7 +41,8 @@ pub struct StepSettings {
     pub substeps: u32,
     /// Sweeps over all contacts in the first substep; later ones do one. 1 to 64, default 3.
     pub first_sweeps: u32,
-    /// The same for islands whose weight the contact graph cannot place: heaps, arches, wedged bodies. 1 to 64, default 12.
+    /// Sweeps that find what the contacts of an island carry, as if it stood still, where the contact graph cannot place its weight: heaps, arches,
+    /// wedged bodies. 1 to 64, default 12.
     pub first_sweeps_hard: u32,
     /// Contacts are found this far ahead of touching, and further for fast bodies. Metres, default 0.02.
     pub contact_margin_m: f32,
@@ -55,7 +56,8 @@ pub struct StepSettings {
     pub shock_propagation: ShockPropagation,
     /// How much a body moves when overlap with the one above it is removed: 1 as its mass says, 0 not at all. Default 0.5.
     pub shock_yield: f32,
-    /// A body quieter than this counts towards rest: speed, spin times radius, and change of pose. m/s, default 0.05.
+    /// A body quieter than this counts towards rest: speed, spin times radius, and change of pose. One that goes steadily on its way, faster than a
+    /// tenth of it (balls and capsules: than 0.4 of it), does not count. m/s, default 0.05.
     pub rest_speed: f32,
     /// How long a body must be quiet to come to rest, or a quarter of it where it overlaps by less than twice what is allowed; 0 switches
     /// rest off. Seconds, default 2.
