@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use forerun::timeline::{Certainty, Sample};
-use forerun::{Blending, BodyId, Frame, Offset, Picture, Snapshot};
+use forerun::{Blending, BodyId, Frame, Offset, Picture, Snapshot, Vec3};
 use serde::Serialize;
 
 /// A body goes by more than so many times what its velocity and the blend explain: a jump.
@@ -21,10 +21,13 @@ pub(crate) struct Seen {
     pub(crate) backward_steps: u64,
     /// Pictures whose time went on by more than 1.05 of what passed.
     pub(crate) forward_jumps: u64,
-    /// Bodies that went farther from one picture to the next than 1.5 times what explains it.
+    /// Bodies that went farther from one picture to the next than 1.5 times what explains it: their velocities, the blend, or the states
+    /// that they went through.
     pub(crate) teleports: u64,
     /// The farthest beyond that. Metres.
     pub(crate) teleport_max_m: f32,
+    /// Bodies that went farther than their velocities say because the physics pushed them apart, or many frames lay between two pictures.
+    pub(crate) pushed_apart: u64,
     /// Pictures whose clock was slowed because physics was late.
     pub(crate) slowed_pictures: u64,
     /// Slowest that the clock went, as a factor.
@@ -193,12 +196,29 @@ impl Witness {
             let moved = sample.pose.position.distance(was.pose.position);
             let beyond = moved - JUMP * explained - ALLOWED_M;
             if beyond > 0.0 && !self.is_moved(*body, picture.frame) {
+                if moved <= self.path_m(*body, picture) + offset_m * faded + 1e-3 {
+                    self.seen.pushed_apart += 1;
+                    continue;
+                }
                 self.seen.teleports += 1;
                 self.seen.teleport_max_m = self.seen.teleport_max_m.max(beyond);
             }
         }
         let shown = self.frame;
         self.moves.retain(|(_, frame)| *frame >= shown);
+    }
+
+    /// How far a body went since the picture before, from state to state, as is known now. Metres.
+    fn path_m(&self, body: BodyId, picture: &Picture) -> f32 {
+        let snapshot = &picture.snapshot;
+        let frames = (self.frame.0 + 1..=picture.frame.0).map(Frame);
+        let at_frames = frames.map(|frame| frame.seconds(snapshot.frame_seconds()));
+        let times = std::iter::once(self.time_s).chain(at_frames).chain([picture.time_s]);
+        let places: Vec<Vec3> = times
+            .filter_map(|time_s| snapshot.sample(body, time_s))
+            .map(|sample| sample.pose.position)
+            .collect();
+        places.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
     }
 
     /// Whether a command put the body elsewhere since the picture before.
