@@ -16,7 +16,7 @@ const SLOPE_MAX: f64 = 1.0;
 /// Memory is watched after this part of the time.
 const WARM_PART: f64 = 0.2;
 /// A slope over less than this says nothing. Seconds.
-const SLOPE_SECONDS_MIN: f64 = 60.0;
+const SLOPE_SECONDS_MIN: f64 = 300.0;
 
 /// The result; the fields are those of `soak --json`.
 #[derive(Debug, Serialize)]
@@ -197,7 +197,7 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
         format!("{:.2} s, {:.2} s", seen.delay_max_s, seen.delay_end_s),
     )?;
     line("frames computed, again", format!("{}, {}", verdict.frames_ahead, verdict.frames_again))?;
-    line("fewest frames ahead", seen.ahead_min.to_string())?;
+    line("fewest frames ahead", seen.ahead_min.map_or_else(|| "-".to_owned(), |frames| frames.to_string()))?;
     line(
         "pushes seen, within 2 pictures, at most",
         format!("{}, {}, {} pictures", seen.pushes_seen, seen.pushes_in_two, seen.push_pictures_max),

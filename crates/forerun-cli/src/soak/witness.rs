@@ -13,6 +13,9 @@ const JUMP: f32 = 1.5;
 /// What needs no explanation: bodies that overlap are pushed apart without a velocity. Metres.
 const ALLOWED_M: f32 = 0.03;
 
+/// A push that is not seen for so long is not waited for.
+const PUSH_PICTURES_MAX: u64 = 600;
+
 /// What was seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Seen {
@@ -42,8 +45,8 @@ pub(crate) struct Seen {
     pub(crate) late_bodies: u64,
     /// Pictures in which the dragged body was shown late.
     pub(crate) dragged_late: u64,
-    /// Fewest frames that were ahead of a picture, the first second left out.
-    pub(crate) ahead_min: u64,
+    /// Fewest frames that were ahead of a picture, the first second left out; none when there was no more than that.
+    pub(crate) ahead_min: Option<u64>,
     /// Pushes by the local user that were followed until they were seen.
     pub(crate) pushes_seen: u64,
     /// Those of them that were seen in the second picture after the one they were given in, or before.
@@ -83,7 +86,7 @@ struct Push {
 
 impl Witness {
     pub(super) fn new() -> Witness {
-        let seen = Seen { rate_min: 1.0, ahead_min: u64::MAX, ..Seen::default() };
+        let seen = Seen { rate_min: 1.0, ..Seen::default() };
         Witness {
             seen,
             samples: Vec::new(),
@@ -117,6 +120,11 @@ impl Witness {
     fn look_for_push(&mut self, picture: &Picture) {
         let Some(push) = &mut self.push else { return };
         push.pictures += 1;
+        if push.pictures > PUSH_PICTURES_MAX {
+            // Taken back, it seems, before anybody could see it; and what was known before it is not to be kept for ever.
+            self.push = None;
+            return;
+        }
         let now = picture.snapshot.sample(push.body, picture.time_s);
         let then = push.before.sample(push.body, picture.time_s);
         let Some((now, then)) = now.zip(then) else {
@@ -149,7 +157,7 @@ impl Witness {
         self.look_for_push(picture);
         if picture.time_s > 1.0 {
             let ahead = picture.snapshot.horizon().since(picture.frame);
-            self.seen.ahead_min = self.seen.ahead_min.min(ahead);
+            self.seen.ahead_min = Some(self.seen.ahead_min.map_or(ahead, |least| least.min(ahead)));
         }
         self.seen.late_bodies +=
             samples.iter().filter(|(_, sample)| sample.certainty > Certainty::Presumed).count() as u64;
