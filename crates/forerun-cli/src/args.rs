@@ -20,6 +20,8 @@ pub(crate) enum Command {
     View(ViewArgs),
     /// Play a scene against the clock; write queue.csv, report.json and charts
     Run(RunArgs),
+    /// Compute a recording again and compare it with its hashes, or save what can be read of a damaged one
+    Replay(ReplayArgs),
     /// Repeat an experiment of the dissertation, decoupled beside coupled
     Experiment(ExperimentArgs),
     /// List the built-in scenes, or print one as a file
@@ -76,7 +78,25 @@ pub(crate) struct RunArgs {
     /// Folder for queue.csv, report.json and charts
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
+    /// File to record the session in, for `forerun replay`
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
     /// Print the report as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArgs {
+    /// A file that `forerun run SCENE --record FILE` or `save_timeline` wrote
+    pub(crate) file: PathBuf,
+    /// Threads of the physics [default: one per core]
+    #[arg(long, value_parser = threads(), conflicts_with = "recover")]
+    pub(crate) threads: Option<u16>,
+    /// Do not replay: write the part of FILE that can be read to this file
+    #[arg(long, value_name = "OUT")]
+    pub(crate) recover: Option<PathBuf>,
+    /// Print the result as JSON and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -165,7 +185,7 @@ pub(crate) struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ValidateArgs {
-    /// Cases to run [default: all]
+    /// Cases to run [default: all but those that take minutes]
     pub(crate) cases: Vec<String>,
     /// Exit with code 1 when a figure misses its limit
     #[arg(long)]

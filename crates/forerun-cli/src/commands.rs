@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod experiment;
+pub(crate) mod replay;
 pub(crate) mod run;
 pub(crate) mod scenes;
 pub(crate) mod soak;

@@ -74,6 +74,7 @@ macro_rules! input_failure {
 input_failure!(
     forerun::DriverError,
     forerun::PlaybackError,
+    forerun::RecordingError,
     forerun::SceneError,
     forerun::StagingError,
     forerun::ThreadsError

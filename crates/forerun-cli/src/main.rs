@@ -40,6 +40,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => commands::run::main_job(),
         Some(Command::Run(args)) => commands::run::run(&args),
+        Some(Command::Replay(args)) => commands::replay::run(&args),
         Some(Command::Experiment(args)) => commands::experiment::run(&args),
         Some(Command::Scenes(args)) => commands::scenes::run(&args),
         Some(Command::Check(args)) => commands::check::run(&args),

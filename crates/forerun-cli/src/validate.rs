@@ -4,6 +4,7 @@ mod cases;
 #[cfg(test)]
 mod known_misses;
 mod lab;
+mod timelines;
 
 pub(crate) use cases::CASES;
 
@@ -29,11 +30,21 @@ pub(crate) enum Verdict {
     Miss,
     /// It has no limit.
     Reported,
+    /// It is a time: whether it holds says something about this machine, and decides nothing.
+    Timed {
+        /// Whether it holds here and now.
+        holds: bool,
+    },
 }
 
 impl Verdict {
     fn of(holds: bool) -> Self {
         if holds { Verdict::Pass } else { Verdict::Miss }
+    }
+
+    /// Whether it is one of the figures that pass or miss.
+    pub(crate) fn counts(self) -> bool {
+        matches!(self, Verdict::Pass | Verdict::Miss)
     }
 
     /// The word in the table.
@@ -42,6 +53,8 @@ impl Verdict {
             Verdict::Pass => "pass",
             Verdict::Miss => "miss",
             Verdict::Reported => "",
+            Verdict::Timed { holds: true } => "holds here",
+            Verdict::Timed { holds: false } => "too slow here",
         }
     }
 }
@@ -78,6 +91,12 @@ impl Figure {
         Figure { name: name.into(), value, limit: "reported".to_owned(), verdict: Verdict::Reported }
     }
 
+    /// A time that is not to exceed a limit.
+    pub(crate) fn time_at_most(name: impl Into<String>, value: f64, limit: f64) -> Self {
+        let verdict = Verdict::Timed { holds: value <= limit };
+        Figure { verdict, ..Figure::at_most(name, value, limit) }
+    }
+
     /// The value with as many digits as are of use.
     pub(crate) fn digits(&self) -> String {
         let size = self.value.abs();
@@ -96,4 +115,6 @@ pub(crate) struct Case {
     pub(crate) id: &'static str,
     /// Does the experiment.
     pub(crate) run: fn() -> Vec<Figure>,
+    /// Whether it takes so long (more than ten seconds) that it is run only when it is named.
+    pub(crate) long: bool,
 }

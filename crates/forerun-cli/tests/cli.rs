@@ -146,6 +146,16 @@ fn check_finds_no_difference_and_says_what_it_compared() {
 }
 
 #[test]
+fn check_says_in_words_what_it_found_and_how_to_do_it_again() {
+    let options = ["--settle", "20", "--display-step", "2", "--compare-every", "3"];
+    let usual = ["check", "stack:3", "--edits", "7", "--frames", "30", "--threads", "1"];
+    let words = text(&forerun(&[&usual[..], &options[..]].concat()).stdout);
+    assert!(words.contains("--settle 20 --display-step 2 --compare-every 3"), "{words}");
+    assert!(words.contains("every state of every body has the bits of a full run"), "{words}");
+    assert!(words.contains("times cheaper than a full re-simulation"), "{words}");
+}
+
+#[test]
 fn bench_measures_each_scene_and_gives_the_same_hash_for_any_thread_count() {
     let one = json(&forerun(&["bench", "stack:3", "dominoes:10", "--frames", "30", "--json"]));
     let two =

@@ -11,6 +11,7 @@ pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
 mod lanes;
+pub mod meter;
 pub mod narrow_phase;
 mod plan;
 pub mod settings;

@@ -128,12 +128,17 @@ fn resting(group: &Group, roots: &Islands, environment: &Environment) -> Vec<boo
             awake[roots.root(i)] = true;
         }
     }
+    let mut held = vec![false; members.len()];
     for c in group.contacts {
-        for (driver, driven) in [(c.first, c.second), (c.second, c.first)] {
-            if members[driver as usize].drives() {
-                awake[roots.root(driven as usize)] = true;
-            }
+        for (support, carried) in [(c.first, c.second), (c.second, c.first)] {
+            let support = &members[support as usize];
+            held[roots.root(carried as usize)] |= !support.body.is_dynamic();
+            awake[roots.root(carried as usize)] |= support.drives();
         }
+    }
+    for (i, m) in members.iter().enumerate() {
+        // Nothing rests on nothing, whatever its state says.
+        awake[roots.root(i)] |= !held[roots.root(i)] && m.body.acceleration(environment) != Vec3::ZERO;
     }
     (members.iter().enumerate()).map(|(i, m)| m.body.is_dynamic() && !awake[roots.root(i)]).collect()
 }

@@ -1,7 +1,9 @@
 //! The step of a closed group of bodies: contacts in, next states out.
 
+use forerun_geometry::{Aabb, Vec3};
 use rayon::prelude::*;
 
+use crate::bounds::swept_bound;
 use crate::narrow_phase::{Contact, find_contacts};
 use crate::plan::{Island, Plan, half_thickness, pack};
 use crate::solver::{Batch, fly, rest_after_slices};
@@ -25,7 +27,7 @@ pub struct Member<'a> {
 impl Member<'_> {
     /// Whether it is a kinematic body in motion: what it touches is pushed, and not at rest.
     pub(crate) fn drives(&self) -> bool {
-        let zero = forerun_geometry::Vec3::ZERO;
+        let zero = Vec3::ZERO;
         self.body.kind == BodyKind::Kinematic
             && (self.state.velocity != zero || self.state.angular_velocity != zero)
     }
@@ -189,6 +191,7 @@ impl<'a> Slicer<'a> {
         let pairs = self.plan.pairs_of(&wanted, self.group);
         let mut members: Vec<Vec<Member>> =
             packed.iter().map(|b| self.members_with_pairs(b, &pairs)).collect();
+        let reach: Vec<Vec<Aabb>> = members.iter().map(|m| self.reach(m)).collect();
         for slice in 0..self.count {
             let mut batches: Vec<Batch> = (members.iter().zip(&packed))
                 .map(|(m, islands)| self.detect(m, islands, &pairs, environment))
@@ -198,13 +201,13 @@ impl<'a> Slicer<'a> {
             }
             observer.after(Stage::Collisions);
             let solved = solve(&mut batches, observer);
-            for ((members, islands), (batch, states)) in
-                members.iter_mut().zip(&packed).zip(batches.iter().zip(solved))
+            for (((members, islands), reach), (batch, states)) in
+                members.iter_mut().zip(&packed).zip(&reach).zip(batches.iter().zip(solved))
             {
                 self.note(batch, notes);
-                for (member, state) in members.iter_mut().zip(&states) {
+                for ((member, state), reach) in members.iter_mut().zip(&states).zip(reach) {
                     // Rest is counted in whole frames: at the end.
-                    member.state = BodyState { rest: 0, ..*state };
+                    member.state = within(member.body, BodyState { rest: 0, ..*state }, reach);
                 }
                 if slice + 1 == self.count {
                     let states: Vec<BodyState> = members.iter().map(|m| m.state).collect();
@@ -218,6 +221,11 @@ impl<'a> Slicer<'a> {
         too_deep.sort_unstable();
         too_deep.dedup();
         too_deep
+    }
+
+    /// Where each member may be in this frame: nobody looked for contacts elsewhere.
+    fn reach(&self, members: &[Member]) -> Vec<Aabb> {
+        members.iter().map(|m| swept_bound(m.body, &m.state, self.environment)).collect()
     }
 
     /// The islands as one batch, with the contacts of the group.
@@ -322,6 +330,16 @@ impl<'a> Slicer<'a> {
     }
 }
 
+/// The state of a body that a hit has thrown where nobody looked for contacts, held at the border until the frame ends.
+fn within(body: &Body, state: BodyState, reach: &Aabb) -> BodyState {
+    if !body.is_dynamic() {
+        return state;
+    }
+    let now = body.shape.aabb(&body.own_pose(&state));
+    let shift = (reach.min - now.min).max(Vec3::ZERO) + (reach.max - now.max).min(Vec3::ZERO);
+    if shift.is_finite() { BodyState { position: state.position + shift, ..state } } else { state }
+}
+
 /// From indices of a group to indices of a batch.
 struct Local {
     of: Vec<u32>,
@@ -346,7 +364,7 @@ fn quarantine(group: &Group, next: &mut [BodyState]) -> u32 {
     let mut count = 0;
     for (state, member) in next.iter_mut().zip(group.members) {
         if !state.is_finite() {
-            let zero = forerun_geometry::Vec3::ZERO;
+            let zero = Vec3::ZERO;
             *state = BodyState { velocity: zero, angular_velocity: zero, rest: 0, ..member.state };
             count += 1;
         }

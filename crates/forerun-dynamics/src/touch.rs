@@ -2,9 +2,9 @@
 
 use forerun_geometry::Vec3;
 
-use crate::BodyId;
 use crate::narrow_phase::Contact;
 use crate::solver::Batch;
+use crate::{BodyId, Member};
 
 /// Bodies that start the frame no farther apart than this touch, whether they push each other or not. Metres.
 const TOUCHING_M: f32 = 0.001;
@@ -22,6 +22,9 @@ pub struct Touch {
     /// Sum of the normal impulses over the frame, bounces included. N s, 0 or more. A body of mass m at rest on the ground has m g times
     /// the length of the frame.
     pub impulse: f32,
+    /// How fast the two came together where they pushed each other, when the frame (or slice) began: the most of all points. m/s, 0 or more.
+    /// What lies or slides has next to none, whatever its weight: this is what makes a noise.
+    pub speed: f32,
     /// Where, in the world, when the frame (or slice) began: the mean of the contact points, by impulse. Metres.
     pub point: Vec3,
     /// Mean unit normal from the first body to the second, by impulse.
@@ -34,7 +37,7 @@ impl Touch {
     pub fn same_bits(&self, other: &Touch) -> bool {
         let bits = |t: &Touch| {
             let (p, n) = (t.point, t.normal);
-            [t.impulse, p.x, p.y, p.z, n.x, n.y, n.z].map(f32::to_bits)
+            [t.impulse, t.speed, p.x, p.y, p.z, n.x, n.y, n.z].map(f32::to_bits)
         };
         (self.first, self.second) == (other.first, other.second) && bits(self) == bits(other)
     }
@@ -72,18 +75,25 @@ impl Ledger {
         for (contact, impulses) in batch.contacts.iter().zip(&batch.impulses) {
             let manifold = &contact.manifold;
             let points = manifold.points();
-            let (mut impulse, mut point_sum, mut normal_sum, mut middle) =
-                (0.0, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+            let [first, second] = [contact.first, contact.second].map(|i| &batch.members[i as usize]);
+            let (mut impulse, mut speed) = (0.0, 0.0);
+            let (mut point_sum, mut normal_sum, mut middle) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
             for (point, pushed) in points.iter().zip(impulses) {
                 impulse += pushed;
                 point_sum += point.position * *pushed;
                 normal_sum += point.normal * *pushed;
                 middle += point.position;
+                if *pushed > 0.0 {
+                    let velocity = |member: &Member| member.state.velocity_at(point.position);
+                    let closing = (velocity(first) - velocity(second)).dot(point.normal);
+                    // Spelled out: which zero `max` gives differs by platform.
+                    speed = if closing > speed { closing } else { speed };
+                }
             }
             if impulse > 0.0 || manifold.deepest() <= TOUCHING_M {
-                let [first, second] = [contact.first, contact.second].map(|i| batch.members[i as usize].id);
                 let point = middle / points.len() as f32;
-                let touch = Touch { first, second, impulse, point, normal: manifold.normal };
+                let normal = manifold.normal;
+                let touch = Touch { first: first.id, second: second.id, impulse, speed, point, normal };
                 self.pushes.push(Push { touch, island: island_of(contact), point_sum, normal_sum });
             }
         }
@@ -111,6 +121,7 @@ fn merged(pushes: &[Push]) -> Touch {
     let (mut impulse, mut point, mut normal) = (0.0, Vec3::ZERO, Vec3::ZERO);
     for push in pushes {
         impulse += push.touch.impulse;
+        touch.speed = touch.speed.max(push.touch.speed);
         point += push.point_sum;
         normal += push.normal_sum;
     }
@@ -122,6 +133,7 @@ fn merged(pushes: &[Push]) -> Touch {
             touch.normal = normal / length;
         }
     }
+    touch.speed = touch.speed.min(f32::MAX);
     touch.impulse = if impulse.is_finite() { impulse } else { f32::MAX };
     // -0 made +0, so that equal touches have equal bits.
     touch.point += Vec3::ZERO;

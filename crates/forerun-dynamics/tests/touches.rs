@@ -51,6 +51,7 @@ fn what_rests_carries_the_weight_above_it() {
             let touch = between(&touches, lower, lower + 1).unwrap();
             assert!((touch.impulse / (carried * weight) - 1.0).abs() < 0.01, "{frame}: {touch:?}");
             assert!((touch.normal - Vec3::Y).length() < 1e-3);
+            assert!((0.0..0.05).contains(&touch.speed), "{touch:?}");
             assert!((touch.point - Vec3::Y * lower as f32).length() < 0.02, "{touch:?}");
         }
     }
@@ -104,6 +105,7 @@ fn two_balls_push_each_other_alike() {
             let expected = 2.0 * m * n / (m + n) * closing.dot(touch.normal);
             assert!((touch.impulse / expected - 1.0).abs() < 1e-3, "{touch:?}, {expected}");
             assert!(touch.normal.x > 0.9);
+            assert!((touch.speed - closing.dot(touch.normal)).abs() < 1e-4, "{touch:?}");
         }
     }
     assert_eq!(met, 1);

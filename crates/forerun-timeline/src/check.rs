@@ -108,7 +108,7 @@ pub fn check(
             session.compare();
         }
     }
-    // The reference was edited too, and may have been forked: compare with one that knew everything from the start.
+    // The reference was edited too, and began where the timeline had settled: compare with one that knew everything from the start.
     let commands = session.in_force.into_iter().map(|(key, change)| Command { key, change });
     let frames = session.timeline.horizon().0 as u32;
     session.report.add_fresh(&session.timeline, full_run(bodies, commands, environment, frames))?;
@@ -143,20 +143,21 @@ impl Session {
             past: settings.frames,
             ..TimelineSettings::default()
         };
+        let mut timeline = Timeline::new(bodies, environment, frames).map_err(FullRunError::Start)?;
+        timeline.mutate(settings.mutation);
+        // What has settled is not computed twice: the full run at the end says whether it is right.
+        let unsettled = (settings.settle == 0).then(|| timeline.fork());
+        run(&mut timeline);
+        for display in 1..=settings.settle {
+            timeline.set_display(Frame(u64::from(display)));
+            run(&mut timeline);
+        }
+        let mut reference = unsettled.unwrap_or_else(|| timeline.fork());
         // It hears of edits later than the timeline does, and has to know the frames on which they act.
         let late = settings.display_step.saturating_mul(settings.compare_every);
-        let longer = TimelineSettings { past: settings.frames.saturating_add(late), ..frames };
-        let mut timeline = Timeline::new(bodies, environment, frames).map_err(FullRunError::Start)?;
-        let mut reference = Timeline::new(bodies, environment, longer).map_err(FullRunError::Start)?;
-        timeline.mutate(settings.mutation);
+        reference.settings.past = settings.frames.saturating_add(late);
         reference.recompute_all();
-        for timeline in [&mut timeline, &mut reference] {
-            run(timeline);
-            for display in 1..=settings.settle {
-                timeline.set_display(Frame(u64::from(display)));
-                run(timeline);
-            }
-        }
+        run(&mut reference);
         Ok(Session {
             settings: *settings,
             random: Random::new(settings.seed),

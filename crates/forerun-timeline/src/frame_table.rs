@@ -9,9 +9,10 @@ use forerun_dynamics::{BodyId, BodyState};
 use forerun_geometry::{Quat, Vec3};
 
 use crate::shared_list::{CHUNK, SharedList};
+use crate::touch_table::{Told, TouchTable};
 
 /// Bodies of one block: neighbours by id.
-const BLOCK_BODIES: usize = 32;
+pub(crate) const BLOCK_BODIES: usize = 32;
 
 /// What stands where there is no body, so that equal blocks have equal bits.
 const ABSENT: BodyState = BodyState {
@@ -52,6 +53,7 @@ impl Block {
 pub(crate) struct FrameTable {
     blocks: SharedList<Arc<Block>>,
     population: u32,
+    touches: TouchTable,
 }
 
 /// A state to be stored; `None` where the body is not there.
@@ -67,7 +69,8 @@ impl FrameTable {
             }
             Arc::new(block)
         });
-        FrameTable { blocks: blocks.collect(), population: states.len() as u32 }
+        let population = states.len() as u32;
+        FrameTable { blocks: blocks.collect(), population, touches: TouchTable::default() }
     }
 
     /// How many bodies there are.
@@ -139,10 +142,33 @@ impl FrameTable {
             }
         }
         table.share(&written, before);
-        if table.blocks.shares_all(&before.blocks) {
+        if table.shares_all(before) {
             return (Arc::clone(before), changed);
         }
         (Arc::new(table), changed)
+    }
+
+    /// Who touched whom in the step that led to the frame.
+    pub(crate) fn touches(&self) -> &TouchTable {
+        &self.touches
+    }
+
+    /// This table with other lists of touches. What comes out as in `before`, the table of the frame before, is shared with it.
+    pub(crate) fn with_touches(
+        self: Arc<FrameTable>,
+        told: &Told,
+        before: &Arc<FrameTable>,
+    ) -> Arc<FrameTable> {
+        let touches = self.touches.with(told, &before.touches);
+        if touches.shares_all(&self.touches) {
+            return self;
+        }
+        let table = FrameTable { touches, ..FrameTable::clone(&self) };
+        if table.shares_all(before) { Arc::clone(before) } else { Arc::new(table) }
+    }
+
+    fn shares_all(&self, other: &FrameTable) -> bool {
+        self.blocks.shares_all(&other.blocks) && self.touches.shares_all(&other.touches)
     }
 
     /// Takes over the blocks of `before` that have the bits of those written (sorted).
@@ -171,7 +197,8 @@ impl FrameTable {
             own * size_of::<Block>() + size_of_val(mine)
         });
         let own: usize = own.sum();
-        own + self.blocks.len().div_ceil(CHUNK) * size_of::<usize>() + size_of::<FrameTable>()
+        let touches = self.touches.bytes_beyond(before.map(|before| &before.touches));
+        own + touches + self.blocks.len().div_ceil(CHUNK) * size_of::<usize>() + size_of::<FrameTable>()
     }
 }
 

@@ -39,6 +39,8 @@ pub mod check;
 pub mod command;
 mod command_log;
 mod commanding;
+mod contact_event;
+mod contact_listener;
 mod definitions;
 mod effect;
 mod fork;
@@ -60,12 +62,16 @@ mod state_hash;
 mod stats;
 mod tables;
 pub mod timeline;
+mod touch_table;
 mod wavefront;
 
 #[doc(hidden)]
 pub use affected::Mutation;
 pub use areas::Area;
 pub use command::{Change, Command, CommandError, CommandKey};
+pub use contact_event::{ContactEvent, ContactKind};
+pub use contact_listener::{ContactListener, ContactNotice, LateEdits, ListenerSettings};
+pub use forerun_dynamics::Touch;
 pub use fork::Difference;
 pub use frame::Frame;
 pub use order::Order;

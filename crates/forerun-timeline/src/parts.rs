@@ -153,7 +153,7 @@ impl Timeline {
     }
 
     /// A timeline of parts. With states it is as far computed as they go; the states at frames with commands are computed once more, to
-    /// know again what the commands did.
+    /// know again what the commands did; where contacts are recorded, those at all frames, to know them again.
     ///
     /// # Errors
     /// The first part that is not possible, or states that the commands do not lead to.
@@ -213,7 +213,7 @@ impl Timeline {
         self.next_sequence = parts.next_sequence;
         for (index, Command { key, change }) in parts.commands.iter().enumerate() {
             let refuse = |message: String| Err(wrong(format!("commands[{index}]"), message));
-            if key.frame < after || key.frame.0 > FRAME_MAX {
+            if key.frame < after {
                 return refuse(format!("must act after {}, acts at {}", parts.oldest, key.frame));
             }
             if log.contains(key) {
@@ -259,7 +259,8 @@ impl Timeline {
             self.check_changes(changes).map_err(refused)?;
             let table = Arc::clone(self.table(self.horizon()));
             let next = table.with_entries(changes, &table).0;
-            if self.log.at(frame).next().is_some() {
+            // Touches are no part: where they are recorded, all frames are computed once more.
+            if self.settings.record_contacts || self.log.at(frame).next().is_some() {
                 if self.advance() == Progress::Idle || !next.differences(self.table(frame)).is_empty() {
                     let message =
                         "are not the states that the commands lead to: they were computed by another version";
@@ -328,11 +329,10 @@ fn make(part: &NameParts, environment: &Environment) -> Result<Option<Arc<Body>>
     Ok(Some(Arc::new(Body { material, force, torque, gravity_scale, spring: now.spring, ..made })))
 }
 
-/// What every stored state is: finite, turned by a unit quaternion, without -0, and not longer at rest than there is.
+/// What every stored state is: finite, without -0, and not longer at rest than there is.
 fn check_state(state: &BodyState, environment: &Environment) -> Result<(), String> {
-    let unit = (state.rotation.length_squared() - 1.0).abs() < 1e-3;
-    if !(state.is_finite() && unit && state.same_bits(&state.canonical())) {
-        return Err("is none that a body can be in".to_owned());
+    if !(state.is_finite() && state.same_bits(&state.canonical())) {
+        return Err("has a number that is not finite, or -0".to_owned());
     }
     let most = environment.settings.rest_frames() + 1;
     if state.rest > most {

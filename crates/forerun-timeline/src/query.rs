@@ -210,7 +210,7 @@ impl Snapshot {
         }
         let radius = self.body_at(id, frame)?.radius;
         let state = at.here?.get(id)?;
-        let next = at.next?.get(id)?;
+        let next = at.arrival(id)?;
         if part <= 0.0 || std::ptr::eq(state, next) {
             return Some((state.position, radius));
         }

@@ -196,6 +196,11 @@ impl Snapshot {
         Moment { frame: Frame(frame as u64), part: (frames - frame) as f32 }
     }
 
+    /// The last frame that a display at a time (seconds) has reached; at least the oldest.
+    pub(crate) fn frame_by(&self, seconds: f64) -> Frame {
+        self.moment(seconds).frame
+    }
+
     /// What all samples of a time have in common.
     pub(crate) fn look_at(&self, seconds: f64) -> Look<'_> {
         let moment = self.moment(seconds);
@@ -240,9 +245,7 @@ impl Snapshot {
         let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
         let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
-        // Where the step leads, before the commands: nothing that is shown before their frame depends on those.
-        let arrived = look.commanded.and_then(|effects| effects.get(&id)?.arrived.as_ref());
-        let next = arrived.or_else(|| look.next?.get(id)).filter(|_| part > 0.0);
+        let next = look.arrival(id).filter(|_| part > 0.0);
         Some(match next {
             Some(next) if !stays(state, next) => {
                 (body, sample::between((state, next), part, body, &look.environment), certainty)
@@ -278,6 +281,14 @@ pub(crate) struct Look<'a> {
     /// What the commands of the next frame did.
     commanded: Option<&'a FrameEffects>,
     pub(crate) environment: Environment,
+}
+
+impl<'a> Look<'a> {
+    /// Where the step leads a body, before the commands of the next frame: nothing that is shown before that frame depends on those.
+    pub(crate) fn arrival(&self, body: BodyId) -> Option<&'a BodyState> {
+        let commanded = self.commanded.and_then(|effects| effects.get(&body)?.arrived.as_ref());
+        commanded.or_else(|| self.next?.get(body))
+    }
 }
 
 /// Whether a body is the same at both frames, however long it has been at rest. Mostly they are the same memory.

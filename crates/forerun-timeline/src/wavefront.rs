@@ -5,8 +5,10 @@
 
 use std::sync::Arc;
 
-use forerun_dynamics::step::{Group, advance};
-use forerun_dynamics::{BodyId, BodyKind, BodyState, Observer, Stage};
+use forerun_dynamics::step::{Group, advance, advance_touching};
+use forerun_dynamics::{
+    BodyId, BodyKind, BodyState, Environment, Observer, Stage, StepReport, Touches, Unobserved,
+};
 
 use crate::Frame;
 use crate::affected::{Affected, Inputs, Mutation, affected};
@@ -16,12 +18,13 @@ use crate::frame_table::Entry;
 use crate::stale::Stale;
 use crate::stats::Advance;
 use crate::timeline::{Progress, Timeline};
+use crate::touch_table::Told;
 
 impl Timeline {
     /// Computes one frame: the earliest that is out of date, or else a new one while the lookahead has room. Between two calls all
     /// frames up to [`valid_to`](Timeline::valid_to) are true, and commands may come.
     pub fn advance(&mut self) -> Progress {
-        self.advance_observed(&mut forerun_dynamics::Unobserved)
+        self.advance_observed(&mut Unobserved)
     }
 
     /// As [`Timeline::advance`], with an observer of the stages of the step.
@@ -95,11 +98,8 @@ impl Timeline {
         let group = affected(&inputs, out_of_date, &mut self.scratch);
         observer.after(Stage::Collisions);
 
-        let (next, report) = advance(
-            &Group { members: &group.members, pairs: &group.pairs, contacts: &group.contacts },
-            &definitions.environment(frame),
-            observer,
-        );
+        let environment = definitions.environment(frame);
+        let (next, report, touches) = self.step(frame, &group, &environment, observer);
         let is_last = arrival >= self.horizon();
         let arrived = Arrival {
             frame: arrival,
@@ -110,6 +110,8 @@ impl Timeline {
             ask_everybody: self.recompute_all,
         };
         let entries = entries(&group, &next, out_of_date);
+        let outdated = stale.everyone.then(|| stored.touches());
+        let told = touches.map(|touches| Told::new(&entries, &group, &touches, table.touches(), outdated));
         // Forks and later edits share the effects: to touch them is to copy.
         let mut effects = match self.effects.contains_key(&arrival) {
             true => Arc::make_mut(&mut self.effects).remove(&arrival).unwrap_or_default(),
@@ -124,7 +126,10 @@ impl Timeline {
             Arc::make_mut(&mut self.effects).insert(arrival, effects);
         }
 
-        let (new, changed) = stored.with_entries(&entries, &table);
+        let (mut new, changed) = stored.with_entries(&entries, &table);
+        if let Some(told) = told {
+            new = new.with_touches(&told, &table);
+        }
         if extended {
             self.tables.push(new);
         } else {
@@ -146,6 +151,40 @@ impl Timeline {
         self.fit_memory();
         done
     }
+
+    /// The next states of a group, and where that is recorded, who touched whom.
+    fn step(
+        &self,
+        frame: Frame,
+        group: &Affected,
+        environment: &Environment,
+        observer: &mut dyn Observer,
+    ) -> (Vec<BodyState>, StepReport, Option<Touches>) {
+        let step = Group { members: &group.members, pairs: &group.pairs, contacts: &group.contacts };
+        if self.settings.record_contacts {
+            let mut touches = Touches::default();
+            let (next, report) = advance_touching(&step, environment, observer, &mut touches);
+            if frame == self.oldest() && touches.resting.contains(&true) {
+                touches = touches_of_all(&step, environment);
+            }
+            return (next, report, Some(touches));
+        }
+        let (next, report) = advance(&step, environment, observer);
+        (next, report, None)
+    }
+}
+
+/// What a step tells about touches when nothing counts as a fixpoint: the frame before may be none that tells.
+fn touches_of_all(step: &Group, environment: &Environment) -> Touches {
+    let mut members = step.members.to_vec();
+    for member in &mut members {
+        // The last frame of rest that is solved; nothing else reads the counter.
+        member.state.rest = member.state.rest.min(environment.settings.rest_frames());
+    }
+    let mut touches = Touches::default();
+    let step = Group { members: &members, ..*step };
+    let _ = advance_touching(&step, environment, &mut Unobserved, &mut touches);
+    touches
 }
 
 /// The next states of the due members, and `None` for the out-of-date bodies that do not exist. Sorted.

@@ -5,7 +5,7 @@ mod scenes;
 
 use forerun_dynamics::{BodyDef, Environment};
 use forerun_timeline::check::{CheckSettings, Random, check, full_run, mismatches, random_change};
-use forerun_timeline::{Command, CommandKey, Frame, Progress, Timeline, TimelineSettings};
+use forerun_timeline::{Command, CommandKey, Frame, Mutation, Progress, Timeline, TimelineSettings};
 
 fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a small pool of threads")
@@ -133,6 +133,34 @@ fn edits_one_by_one() {
             assert!(report.recomputed <= report.full, "{report:?}");
         }
     }
+}
+
+/// After the scene has settled, with a display that moves on, and compared once for some edits: the same answer, and still a rule that
+/// is left out is found.
+#[test]
+fn edits_in_batches_behind_a_moving_display() {
+    let settings = |seed, mutation| CheckSettings {
+        edits: 12,
+        seed,
+        frames: 50,
+        settle: 30,
+        display_step: 3,
+        compare_every: 4,
+        mutation,
+    };
+    let mut found = 0;
+    for (name, bodies) in scenes::all() {
+        for seed in [8, 9] {
+            let differ = |mutation| {
+                let settings = settings(seed, mutation);
+                let report = check(&bodies, environment(seed), &settings, &mut |_| {});
+                report.expect("bodies are possible").mismatches
+            };
+            assert_eq!(differ(Mutation::None), 0, "scene {name}, seed {seed}");
+            found += differ(Mutation::NoOldIsland);
+        }
+    }
+    assert!(found > 0);
 }
 
 /// Many more sessions: `cargo test -p forerun-timeline --test oracle -- --ignored`.

@@ -46,6 +46,12 @@ fn crowd() -> Timeline {
     let settings = TimelineSettings { lookahead: 50, ..TimelineSettings::default() };
     let mut timeline = Timeline::new(&bodies, Environment::default(), settings).unwrap();
     while timeline.advance() != Progress::Idle {}
+    // Up to the frame of a command all are shown where the step leads them.
+    for body in (1..70).step_by(4) {
+        let pose = Pose::from_position(random.vector() * 300.0);
+        timeline.change(Frame(10), Change::Move { body: BodyId(body), pose }).unwrap();
+    }
+    while timeline.advance() != Progress::Idle {}
     let push = |body| Change::Push { body: BodyId(body), impulse: Vec3::splat(500.0), at_point: None };
     for body in [3, 17, 40] {
         timeline.change(Frame(20), push(body)).unwrap();
@@ -59,7 +65,7 @@ fn crowd() -> Timeline {
 
 /// At frames, between them, where bodies are late, and past the horizon.
 fn times(random: &mut Random) -> Vec<f64> {
-    let mut times = vec![0.0, 10.0 / 60.0, 0.7, 5.0];
+    let mut times = vec![0.0, 9.5 / 60.0, 9.9 / 60.0, 10.0 / 60.0, 0.7, 5.0];
     times.extend((0..12).map(|_| f64::from(random.signed() + 1.0) * 0.45));
     times
 }

@@ -86,7 +86,8 @@ pub use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Sphere};
 pub use forerun_geometry::{Pose, Quat, Shape, Vec3};
 pub use forerun_scene::{Scene, SceneError};
 pub use forerun_timeline::{
-    Change, Command, CommandError, CommandKey, Frame, Keep, Order, Sample, Snapshot, Timeline,
+    BodyHit, Certainty, Change, Command, CommandError, CommandKey, ContactEvent, ContactKind,
+    ContactListener, ContactNotice, Difference, Edit, Frame, Keep, Order, Sample, Snapshot, Timeline,
     TimelineSettings,
 };
 pub use playback::{

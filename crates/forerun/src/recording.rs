@@ -17,12 +17,15 @@ mod states;
 use std::path::Path;
 
 use forerun_timeline::parts::{Keep, TimelineParts};
-use forerun_timeline::{Frame, Order, Timeline};
+use forerun_timeline::{Change, CommandError, Frame, Order, Timeline};
 
 pub use decode::Recovered;
 pub use error::{RecordingError, RecordingFault};
 pub use recorder::Recorder;
 pub use replay::{MarkDifference, Replay};
+
+/// So many names may have been reserved between two that are used: who reads a file is not to run out of memory for one number in it.
+const RESERVED_MAX: usize = 65_536;
 
 /// What a recording file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +43,8 @@ pub enum Event {
     Order(Order),
     /// What was so when all orders so far had been worked off to a frame.
     Mark(Mark),
+    /// From here on it is another timeline: a fork was adopted, which may have had another past.
+    Restart(Box<TimelineParts>),
 }
 
 /// A hash to compare a replay with.
@@ -87,14 +92,33 @@ impl Recording {
         for event in &self.events {
             match event {
                 Event::Order(order) => {
-                    let obeyed = timeline.obey(order.clone());
+                    let obeyed = obey(&mut timeline, order);
                     obeyed.map_err(|error| RecordingError::impossible(format!("an order: {error}")))?;
                 }
                 Event::Mark(mark) => timeline.set_display(mark.display),
+                Event::Restart(parts) => {
+                    let made = Timeline::from_parts(TimelineParts::clone(parts));
+                    timeline = made.map_err(RecordingError::impossible)?;
+                }
             }
         }
         Ok(timeline)
     }
+}
+
+/// Obeys a recorded order. Names that were reserved for it are not recorded: they are reserved now.
+fn obey(timeline: &mut Timeline, order: &Order) -> Result<(), CommandError> {
+    if let Order::Submit(command) | Order::Replace(command) = order
+        && let Some(body) = command.change.body()
+    {
+        let reserved = (body.0 as usize).min(timeline.names() + RESERVED_MAX);
+        // A body that is added has a name by that.
+        let count = reserved + usize::from(!matches!(command.change, Change::Add { .. }));
+        while timeline.names() < count {
+            timeline.reserve_body();
+        }
+    }
+    timeline.obey(order.clone())
 }
 
 /// Saves a timeline: bodies, commands and, if wanted, all states that are known to be true. What was at `path` is replaced once

@@ -1,11 +1,11 @@
 //! Measures the step of one world: time per stage, and guards on the quality that the time was paid for.
 
 use cpu_time::ThreadTime;
-use forerun::dynamics::{Observer, Stage, World};
+use forerun::dynamics::{Observer, Stage, World, meter};
 use forerun::{Clock, Threads};
 use serde::Serialize;
 
-use crate::bench::{energy, memory, overlap};
+use crate::bench::memory;
 use crate::stats::Spread;
 
 /// Overlap and energy are looked at every so many frames: the meters are slower than the step.
@@ -76,7 +76,7 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
     let Run { scene, frames, thread_count, threads } = *run;
     memory::restart_peak();
     let stopwatch = if thread_count == 1 { Stopwatch::ThreadCpu } else { Stopwatch::Wall(Clock::system()) };
-    let energy_start = energy::mechanical_j(&world);
+    let energy_start = meter::mechanical_energy_j(&world);
     let (mut energy_max, mut overlap_max) = (energy_start, 0.0_f32);
     let mut profile = Profile::new(stopwatch);
     let mut times_ms = Vec::with_capacity(frames as usize);
@@ -87,8 +87,8 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
         quarantined += u64::from(report.quarantined);
         times_ms.push(step_ms);
         if frame % METER_EVERY == 0 || frame + 1 == frames {
-            energy_max = energy_max.max(energy::mechanical_j(&world));
-            overlap_max = overlap_max.max(overlap::deepest_m(&world));
+            energy_max = energy_max.max(meter::mechanical_energy_j(&world));
+            overlap_max = overlap_max.max(meter::deepest_overlap_m(&world));
         }
         progress(frame + 1);
     }
@@ -104,9 +104,9 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
         stage_ms: profile.mean_ms(frames),
         body_steps_per_s: (world.bodies().len() * later.len()) as f64 / total_s.max(1e-9),
         overlap_max_m: overlap_max,
-        overlap_end_m: overlap::deepest_m(&world),
+        overlap_end_m: meter::deepest_overlap_m(&world),
         energy_max_over_initial: (energy_start > 0.0).then_some(energy_max / energy_start),
-        speed_end_mean: energy::mean_speed(&world),
+        speed_end_mean: meter::mean_speed(&world),
         quarantined,
         bytes_per_body_frame: None,
         peak_rss_bytes: memory::peak_bytes(),

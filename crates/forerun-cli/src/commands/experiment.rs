@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use forerun::dynamics::Unobserved;
+use forerun::dynamics::{Unobserved, meter};
 use forerun::{BodyId, BodyKind, DriverKind, Playback, PlaybackSettings, Scene, world_of};
 
 use super::run::{DISSERTATION_FRAME_SECONDS, play_with_bar};
 use crate::args::{ExperimentArg, ExperimentArgs};
-use crate::bench;
 use crate::charts;
 use crate::experiment::{self, Calibration, Figure, FigureKind, Outcome, Plan, Variant};
 use crate::failure::Failure;
@@ -107,7 +106,7 @@ fn overlap_max_m(scene: &Scene, driver: DriverKind, seconds: f64) -> Result<Opti
     let mut deepest = 0.0f32;
     for _ in 0..frames {
         world.step(&mut Unobserved);
-        deepest = deepest.max(bench::overlap_m(&world));
+        deepest = deepest.max(meter::deepest_overlap_m(&world));
     }
     Ok(Some(deepest))
 }

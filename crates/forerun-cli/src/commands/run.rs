@@ -30,6 +30,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         fps: args.fps,
         lookahead: args.lookahead,
         threads: args.threads.and_then(NonZeroU16::new),
+        record: args.record.clone(),
         ..PlaybackSettings::default()
     };
     // Before the playback: an hour of it is not to end in a folder that cannot be made.
@@ -37,10 +38,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         make_folder(folder)?;
     }
     let playback = play_with_bar(&scene, &settings)?;
-    let files = match &args.out {
+    let mut files = match &args.out {
         Some(folder) => write_files(&playback, folder)?,
         None => Vec::new(),
     };
+    files.extend(args.record.clone());
     if args.json { print_json(&playback.report) } else { print_result(&playback.report, &files) }
 }
 

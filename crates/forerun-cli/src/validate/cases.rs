@@ -1,6 +1,6 @@
 //! Cases: the registry. A new case is a room beside this one and a row here.
 
-use super::Case;
+use super::{Case, Figure};
 
 mod block_on_slope;
 mod bouncing_balls;
@@ -12,30 +12,48 @@ mod off_centre_impact;
 mod rolling_down;
 mod sampling;
 mod spinning_ball;
+mod timeline_bits;
+mod timeline_containment;
+mod timeline_cost;
+mod timeline_cutoff;
+mod timeline_scrub;
 
 /// All cases, in the order in which they are run.
 pub(crate) const CASES: &[Case] = &[
-    Case { id: "free_fall", run: free_fall::run },
-    Case { id: "block_on_slope", run: block_on_slope::run },
-    Case { id: "rolling_down", run: rolling_down::run },
-    Case { id: "bouncing_balls", run: bouncing_balls::run },
-    Case { id: "free_rotation", run: free_rotation::run },
-    Case { id: "off_centre_impact", run: off_centre_impact::run },
-    Case { id: "spinning_ball", run: spinning_ball::run },
-    Case { id: "euler_disc", run: euler_disc::run },
-    Case { id: "newton_chain", run: newton_chain::run },
-    Case { id: "sampling", run: sampling::run },
+    short("free_fall", free_fall::run),
+    short("block_on_slope", block_on_slope::run),
+    short("rolling_down", rolling_down::run),
+    short("bouncing_balls", bouncing_balls::run),
+    short("free_rotation", free_rotation::run),
+    short("off_centre_impact", off_centre_impact::run),
+    short("spinning_ball", spinning_ball::run),
+    short("euler_disc", euler_disc::run),
+    short("newton_chain", newton_chain::run),
+    short("sampling", sampling::run),
+    short("timeline_cutoff", timeline_cutoff::run),
+    short("timeline_containment", timeline_containment::run),
+    long("timeline_cost", timeline_cost::run),
+    long("timeline_scrub", timeline_scrub::run),
+    long("timeline_bits", timeline_bits::run),
 ];
+
+const fn short(id: &'static str, run: fn() -> Vec<Figure>) -> Case {
+    Case { id, run, long: false }
+}
+
+const fn long(id: &'static str, run: fn() -> Vec<Figure>) -> Case {
+    Case { id, run, long: true }
+}
 
 #[cfg(test)]
 mod tests {
+    use super::super::Verdict;
     use super::super::known_misses::KNOWN_MISSES;
-    use super::super::{Figure, Verdict};
     use super::*;
 
     fn misses() -> Vec<(&'static str, Figure)> {
         let mut misses = Vec::new();
-        for case in CASES {
+        for case in CASES.iter().filter(|case| !case.long) {
             let figures = (case.run)();
             assert!(!figures.is_empty(), "{} measures nothing", case.id);
             misses.extend(figures.into_iter().filter(|f| f.verdict == Verdict::Miss).map(|f| (case.id, f)));

@@ -11,9 +11,11 @@ use super::contact_graph::ContactGraph;
 use super::impulses::{ImpulseSums, add_substep};
 use super::islands::Islands;
 use super::load::{Load, LoadPass, Strain};
-use super::positions::{Ending, IslandsAt, REST_TOUCH_M, moved, settle};
+use super::positions::moved;
 use super::prepare::{Source, prepare};
+use super::rest::{IslandsAt, endings, settle};
 use super::shock::{propagate_classic, propagate_shock};
+use super::standing::StandingPass;
 use super::sweep::{relax, sweep};
 use super::velocities::integrate_velocities;
 use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
@@ -154,6 +156,14 @@ impl<'a> Batch<'a> {
         kicks.push(Row::default());
         let mut before = Vec::new();
         let (blocks, bodies, impulses) = (&mut self.blocks, &mut self.bodies, &mut self.impulses);
+        let standing = StandingPass {
+            guard: &guard,
+            kicks: &kicks,
+            displacements: &bodies.displacements,
+            substep_seconds: h,
+            sweeps: settings.first_sweeps_hard,
+        };
+        standing.run(&mut blocks[self.easy_blocks..]);
         for substep in 0..settings.substeps {
             if self.bounces {
                 resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings, impulses));
@@ -170,13 +180,8 @@ impl<'a> Batch<'a> {
             apply_impulses(blocks, &mut bodies.velocities);
             let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
             guard.check(blocks, &before, &mut bodies.velocities, guess);
-            let (easy, hard) = blocks.split_at_mut(self.easy_blocks);
-            let (first, first_hard) = (settings.first_sweeps, settings.first_sweeps_hard);
-            for _ in 0..if substep == 0 { first } else { 1 } {
-                sweep(easy, &mut bodies.velocities, &bodies.displacements, h);
-            }
-            for _ in 0..if substep == 0 { first_hard } else { 1 } {
-                sweep(hard, &mut bodies.velocities, &bodies.displacements, h);
+            for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
+                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
             }
             guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
             displace(bodies, &before, &kicks, h);
@@ -223,26 +228,13 @@ impl<'a> Batch<'a> {
 
     /// Stage 6: new states, in the order of the members.
     pub(crate) fn integrate_positions(&self) -> Vec<BodyState> {
-        let endings = self.endings();
+        let endings = endings(&self.members, &self.contacts, &self.spins, &self.environment.settings);
         let mut next: Vec<BodyState> = (self.members.iter().enumerate())
             .map(|(i, m)| moved(m, &self.bodies, i, &endings[i], &self.environment))
             .collect();
-        let islands = IslandsAt { islands: &self.islands, driven: &self.driven() };
+        let islands = IslandsAt { islands: &self.islands, driven: &self.driven(), contacts: &self.contacts };
         settle(&self.members, &mut next, &endings, &islands, &self.environment);
         next
-    }
-
-    fn endings(&self) -> Vec<Ending> {
-        let mut endings: Vec<Ending> =
-            self.spins.iter().map(|&spin| Ending { spin, ..Ending::default() }).collect();
-        for c in &self.contacts {
-            let deepest = deepest(c);
-            for i in [c.first as usize, c.second as usize] {
-                endings[i].overlap = endings[i].overlap.max(deepest);
-                endings[i].touches |= c.manifold.deepest() < REST_TOUCH_M;
-            }
-        }
-        endings
     }
 
     /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
@@ -260,12 +252,6 @@ impl<'a> Batch<'a> {
 /// Whether contacts with the shape come from a distance field.
 pub(crate) fn is_mesh(shape: &Shape) -> bool {
     matches!(shape, Shape::Mesh(_))
-}
-
-/// Deepest overlap of a contact; 0 when it is apart. Metres.
-fn deepest(contact: &Contact) -> f32 {
-    let m = &contact.manifold;
-    m.points[..m.count as usize].iter().fold(0.0, |deepest, p| deepest.max(-p.separation))
 }
 
 /// What the kernels that look ahead need of the bodies.

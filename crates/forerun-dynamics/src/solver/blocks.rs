@@ -60,10 +60,10 @@ pub(crate) struct FrictionRows<F> {
     pub(crate) kinetic_coefficient: F,
 }
 
-/// The part of the first guess that is momentum: it is taken off before the second substep.
+/// Impulses of eight contacts, as they are applied in one substep.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(crate) struct Momentum<F> {
+pub(crate) struct Impulses<F> {
     pub(crate) points: [F; 4],
     pub(crate) tangents: [F; 2],
     pub(crate) twist: F,
@@ -93,7 +93,8 @@ pub(crate) struct Block<F> {
     pub(crate) centre: CentreRow<F>,
     pub(crate) friction: FrictionRows<F>,
     pub(crate) restitution: F,
-    pub(crate) momentum: Momentum<F>,
+    /// The part of the first guess that is momentum: it is taken off before the second substep.
+    pub(crate) momentum: Impulses<F>,
 }
 
 impl<F: Lanes> Block<F> {
@@ -131,7 +132,7 @@ impl<F: Lanes> Block<F> {
                 kinetic_coefficient: z,
             },
             restitution: z,
-            momentum: Momentum { points: [z; 4], tangents: [z; 2], twist: z },
+            momentum: Impulses { points: [z; 4], tangents: [z; 2], twist: z },
         }
     }
 }

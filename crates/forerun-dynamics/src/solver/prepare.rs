@@ -12,6 +12,9 @@ use crate::{Material, Member};
 const TINY: f32 = 1e-12;
 /// Points this much higher than the lowest have no part in the friction. Metres.
 const NEAR_M: f32 = 0.002;
+/// A point contact twists as if it were a patch of this part of the thinner body's half thickness: a ball that spins in its place comes to stand. (A ball of
+/// 0.2 m at 10 rad/s needs 16 s with friction 0.5; rolling is not hindered.)
+const PATCH_PART: f32 = 0.01;
 /// Below this rise a contact has no vertical share to speak of.
 const RISE_MIN: f32 = 0.2;
 
@@ -37,6 +40,7 @@ struct Arrays {
     weight: [[f32; LANES]; 4],
     yields: [[f32; LANES]; 2],
     friction: [[f32; LANES]; 2],
+    patch: [f32; LANES],
     restitution: [f32; LANES],
     slide: [[f32; LANES]; 3],
 }
@@ -67,6 +71,7 @@ fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
         weight: [z; 4],
         yields: [[1.0; LANES]; 2],
         friction: [z; 2],
+        patch: z,
         restitution: z,
         slide: [z; 3],
     };
@@ -98,6 +103,8 @@ fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
         let material = combine(&source.members[first].body.material, &source.members[second].body.material);
         lanes.friction[0][lane] = material.static_friction;
         lanes.friction[1][lane] = material.friction;
+        let thickness = |i: usize| source.members[i].body.half_thickness;
+        lanes.patch[lane] = PATCH_PART * thickness(first).min(thickness(second));
         lanes.restitution[lane] = material.restitution;
         // What lies below moves less than its mass says, and never more than what lies above.
         let (low, high) = (source.levels[first], source.levels[second]);
@@ -226,7 +233,7 @@ fn fill<F: Lanes>(block: &mut Block<F>, lanes: &Arrays, bodies: &Bodies, up: Vec
     for q in 0..4 {
         radius += F::from_array(near[q]) * (positions[q] - centre).length();
     }
-    block.friction.radius = radius / total;
+    block.friction.radius = (radius / total).max(F::from_array(lanes.patch));
     guess_friction(block, lanes, &positions, centre, up);
 }
 

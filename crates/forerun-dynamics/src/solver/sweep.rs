@@ -213,6 +213,9 @@ pub(crate) fn friction<F: Lanes>(block: &mut Block<F>, v: &mut Sides<F>, sum: F)
     let length = (x * x + y * y).sqrt();
     let (sticks, slides) = (sum * f.static_coefficient, sum * f.kinetic_coefficient);
     let scale = sticks.lt(length).select(slides / length.max(F::splat(1e-20)), F::one());
+    // Where nothing presses nothing rubs, also where the squares above are too small for a number: a contact that does not collide must not
+    // notice that another one in its block does.
+    let scale = sum.gt(F::zero()).select(scale, F::zero());
     let (x, y) = (x * scale, y * scale);
     let (dx, dy) = (x - f.impulses[0], y - f.impulses[1]);
 

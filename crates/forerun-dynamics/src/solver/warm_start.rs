@@ -30,6 +30,19 @@ fn apply_lanes<F: Lanes>(blocks: &mut [Block<F>], velocities: &mut [Row]) {
     }
 }
 
+/// Adds the momentum to impulses that had none.
+pub(crate) fn add_momentum(blocks: &mut [Block<Portable>]) {
+    for block in blocks {
+        for (point, momentum) in block.points.iter_mut().zip(block.momentum.points) {
+            point.impulse = (point.impulse + momentum).max(Portable::zero());
+        }
+        for i in 0..2 {
+            block.friction.impulses[i] += block.momentum.tangents[i];
+        }
+        block.friction.twist_impulse += block.momentum.twist;
+    }
+}
+
 /// Takes the momentum out of the impulses: it has been passed on and must not be passed on again.
 pub(crate) fn remove_momentum(blocks: &mut [Block<Portable>]) {
     for block in blocks {
@@ -118,14 +131,19 @@ impl EnergyGuard<'_> {
         }
     }
 
+    /// What holds for the islands (by root) of a block's contacts; 1 in lanes without one.
+    pub(crate) fn per_lane(&self, block: &Block<Portable>, of_root: &[f32]) -> Portable {
+        let mut factor = [1.0; LANES];
+        for lane in (0..LANES).filter(|&lane| block.source[lane] != NO_CONTACT) {
+            let (a, b) = (block.first[lane] as usize, block.second[lane] as usize);
+            factor[lane] = of_root[self.islands.root(if self.dynamic[a] { a } else { b })];
+        }
+        Portable::from_array(factor)
+    }
+
     fn scale_impulses(&self, scale: &[f32], blocks: &mut [Block<Portable>], what: Guarded) {
         for block in blocks {
-            let mut factor = [1.0; LANES];
-            for lane in (0..LANES).filter(|&lane| block.source[lane] != NO_CONTACT) {
-                let (a, b) = (block.first[lane] as usize, block.second[lane] as usize);
-                factor[lane] = scale[self.islands.root(if self.dynamic[a] { a } else { b })];
-            }
-            let factor = Portable::from_array(factor);
+            let factor = self.per_lane(block, scale);
             for point in &mut block.points {
                 point.impulse = point.impulse * factor;
             }

@@ -14,6 +14,9 @@ pub(crate) struct Session {
     pub(crate) bodies: Vec<Spec>,
     pub(crate) past: u32,
     pub(crate) lookahead: u32,
+    /// Most memory for states.
+    pub(crate) bytes_max: Option<usize>,
+    pub(crate) record_contacts: bool,
     /// Bodies come to rest soon.
     pub(crate) restful: bool,
     pub(crate) edits: Vec<Edit>,
@@ -63,6 +66,8 @@ pub(crate) enum At {
     Display(i8),
     /// Before or after the horizon.
     Horizon(i8),
+    /// As late as can be, or nearly.
+    Never(u8),
 }
 
 /// A number that is small, or not.
@@ -264,14 +269,19 @@ pub(crate) fn session() -> impl Strategy<Value = Session> {
     let few = || prop::collection::vec(spec(Just(Size::One)), 0..10);
     let many = prop::collection::vec(spec(Just(Size::One)), 0..40);
     let pasts = prop_oneof![Just(3_u32), Just(15), Just(1000)];
-    (prop_oneof![few(), few(), many], pasts, 2_u32..25, any::<bool>(), prop::collection::vec(edit(), 1..50))
-        .prop_map(|(bodies, past, lookahead, restful, edits)| Session {
+    let memory = prop_oneof![5 => Just(None), 1 => (10_000_usize..200_000).prop_map(Some)];
+    let settings = (pasts, 2_u32..25, memory, any::<bool>(), any::<bool>());
+    (prop_oneof![few(), few(), many], settings, prop::collection::vec(edit(), 1..50)).prop_map(
+        |(bodies, (past, lookahead, bytes_max, record_contacts, restful), edits)| Session {
             bodies,
             past,
             lookahead,
+            bytes_max,
+            record_contacts,
             restful,
             edits,
-        })
+        },
+    )
 }
 
 fn edit() -> impl Strategy<Value = Edit> {
@@ -299,6 +309,7 @@ fn at() -> impl Strategy<Value = At> {
         4 => (0_u8..30).prop_map(At::Past),
         5 => (-5_i8..6).prop_map(At::Display),
         4 => (-6_i8..6).prop_map(At::Horizon),
+        1 => (0_u8..3).prop_map(At::Never),
     ]
 }
 

@@ -18,7 +18,7 @@ use super::physics::{self, Hinder, Published, Shared};
 use super::picture::Picture;
 use super::reach::Reach;
 use super::refusal::Refusal;
-use crate::{BodyId, Threads};
+use crate::{BodyId, Recorder, Threads};
 
 /// The largest queue: its memory is taken at the start, and a queue without room would never be drained.
 const COMMANDS_MAX: usize = 65_536;
@@ -41,13 +41,21 @@ pub struct DecoupledSettings {
     /// Counts the areas in which a body moved, for every frame ([`FrameNote::areas_active`](crate::FrameNote::areas_active)): costs a
     /// look at each body that moves. Default false.
     pub count_areas: bool,
+    /// Writes down the session. Who keeps a clone of it [finishes](Recorder::finish) the file when the driver is dropped. Default none.
+    pub recorder: Option<Recorder>,
 }
 
 impl DecoupledSettings {
     /// The defaults with these threads.
     #[must_use]
     pub const fn new(threads: Threads) -> Self {
-        DecoupledSettings { threads, command_capacity: 1024, slow_down: Duration::ZERO, count_areas: false }
+        DecoupledSettings {
+            threads,
+            command_capacity: 1024,
+            slow_down: Duration::ZERO,
+            count_areas: false,
+            recorder: None,
+        }
     }
 }
 
@@ -119,6 +127,7 @@ impl Decoupled {
             caught_up: true,
             pictures: 0,
             hinder,
+            recorder: settings.recorder,
         };
         let thread = physics::spawn(physics, settings.threads)
             .map_err(|error| DriverError::NotStarted(error.to_string()))?;

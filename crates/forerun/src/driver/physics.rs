@@ -20,7 +20,7 @@ use super::frame_notes::{FrameNote, FrameNotes};
 use super::hearing::{Heard, Message};
 use super::reach::Reach;
 use super::refusal::Refusal;
-use crate::Threads;
+use crate::{Recorder, Threads};
 
 /// Done after every computed frame.
 pub type Hinder = Box<dyn FnMut() + Send>;
@@ -124,6 +124,7 @@ pub(super) struct Physics {
     /// Pictures that the reach has grown for.
     pub(super) pictures: u64,
     pub(super) hinder: Hinder,
+    pub(super) recorder: Option<Recorder>,
 }
 
 /// Starts the thread; returns once it can be woken.
@@ -170,6 +171,9 @@ impl Physics {
                 }
             }
         }
+        if let Some(recorder) = &self.recorder {
+            recorder.mark(&self.timeline);
+        }
     }
 
     /// Learns what is shown, and how far ahead of it to go.
@@ -179,6 +183,9 @@ impl Physics {
         if pictures != self.pictures {
             self.pictures = pictures;
             self.reach.grow();
+            if let Some(recorder) = &self.recorder {
+                recorder.mark_when_due(&self.timeline);
+            }
         }
     }
 
@@ -191,7 +198,7 @@ impl Physics {
     /// Takes the messages that wait.
     fn hear(&mut self) {
         let messages: Vec<Message> = self.messages.try_iter().take(self.command_capacity).collect();
-        let mut changed = false;
+        let (mut changed, mut adopted) = (false, false);
         for message in messages {
             match message {
                 Message::Obey(order) => {
@@ -204,11 +211,19 @@ impl Physics {
                 Message::Adopt(fork) => {
                     changed = true;
                     match self.heard.adopt(&mut self.timeline, *fork) {
-                        Ok(refused) => self.refuse(refused),
+                        Ok(refused) => {
+                            adopted = true;
+                            self.refuse(refused);
+                        }
                         Err(error) => self.refuse([Refusal::Adopt(error)]),
                     }
                 }
             }
+        }
+        match &self.recorder {
+            Some(recorder) if adopted => recorder.restart(&self.timeline),
+            Some(recorder) if changed => recorder.follow(&self.timeline),
+            _ => {}
         }
         if changed {
             // What is thrown away then was computed in time that nobody else wanted.

@@ -59,5 +59,7 @@ pub fn play(
         ignored: show.ignored(),
         ..Report::new(&scene.name, settings.driver.name(), settings.fps, &rows)
     };
-    Ok(Playback { rows, report, last_poses: show.poses() })
+    let last_poses = show.poses();
+    show.finish()?;
+    Ok(Playback { rows, report, last_poses })
 }

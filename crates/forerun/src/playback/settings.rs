@@ -2,9 +2,11 @@
 
 use std::fmt;
 use std::num::NonZeroU16;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::driver::{ChangeError, DriverError, ThreadsError};
+use crate::recording::RecordingError;
 use crate::staging::StagingError;
 
 /// Who steps the physics.
@@ -42,6 +44,8 @@ pub struct PlaybackSettings {
     pub threads: Option<NonZeroU16>,
     /// Makes every step this much slower. Default 0.
     pub slow_down: Duration,
+    /// A file to record the session in, for `forerun replay`; the decoupled driver only. Default none.
+    pub record: Option<PathBuf>,
 }
 
 impl PlaybackSettings {
@@ -53,6 +57,9 @@ impl PlaybackSettings {
         }
         if !(0.001..=10_000.0).contains(&fps) {
             return refused("fps", format!("must be from 0.001 to 10000, is {fps}"));
+        }
+        if self.record.is_some() && self.driver != DriverKind::Decoupled {
+            return refused("record", "needs the decoupled driver: the other has no timeline".to_owned());
         }
         Ok(())
     }
@@ -67,6 +74,7 @@ impl Default for PlaybackSettings {
             lookahead: 100,
             threads: None,
             slow_down: Duration::ZERO,
+            record: None,
         }
     }
 }
@@ -87,6 +95,8 @@ pub enum PlaybackError {
     Threads(ThreadsError),
     /// The driver failed.
     Driver(DriverError),
+    /// The session cannot be recorded, or not to its end.
+    Recording(RecordingError),
     /// A command of the scene cannot be carried out.
     Change {
         /// Name of the scene.
@@ -103,6 +113,7 @@ impl fmt::Display for PlaybackError {
             PlaybackError::Staging(error) => write!(f, "{error}"),
             PlaybackError::Threads(error) => write!(f, "{error}"),
             PlaybackError::Driver(error) => write!(f, "{error}"),
+            PlaybackError::Recording(error) => write!(f, "{error}"),
             PlaybackError::Change { scene, message } => write!(f, "{scene}: commands: {message}"),
         }
     }
@@ -125,6 +136,12 @@ impl From<ThreadsError> for PlaybackError {
 impl From<DriverError> for PlaybackError {
     fn from(error: DriverError) -> Self {
         PlaybackError::Driver(error)
+    }
+}
+
+impl From<RecordingError> for PlaybackError {
+    fn from(error: RecordingError) -> Self {
+        PlaybackError::Recording(error)
     }
 }
 

@@ -9,6 +9,7 @@ use forerun_timeline::{Certainty, Change, Frame, Sample, TimelineSettings};
 use super::log::QueueRow;
 use super::settings::{DriverKind, PlaybackError, PlaybackSettings};
 use crate::driver::{Clock, Coupled, Decoupled, DecoupledSettings, DriverError, StepLimits, Threads};
+use crate::recording::Recorder;
 use crate::staging::{TimedChange, bare_timeline_of, changes_of, world_of};
 use crate::{BodyId, Pose};
 
@@ -72,6 +73,13 @@ impl Show {
         }
     }
 
+    /// Ends the show, and completes the record of it.
+    pub(super) fn finish(self) -> Result<(), PlaybackError> {
+        let Show::Decoupled(DecoupledShow { driver, recorder, .. }) = self else { return Ok(()) };
+        drop(driver);
+        Ok(recorder.map_or(Ok(()), |recorder| recorder.finish())?)
+    }
+
     /// Where the bodies were in the last picture.
     pub(super) fn poses(&self) -> Vec<(BodyId, Pose)> {
         match self {
@@ -93,6 +101,7 @@ pub(super) struct DecoupledShow {
     samples: Vec<(BodyId, Sample)>,
     computed: u64,
     recomputed: u64,
+    recorder: Option<Recorder>,
 }
 
 impl DecoupledShow {
@@ -103,17 +112,20 @@ impl DecoupledShow {
     ) -> Result<Self, PlaybackError> {
         let lookahead = TimelineSettings { lookahead: settings.lookahead, ..TimelineSettings::default() };
         let timeline = bare_timeline_of(scene, lookahead)?;
-        let slow_down = settings.slow_down;
-        let mut driver = Decoupled::start(
-            timeline,
-            DecoupledSettings { slow_down, count_areas: true, ..DecoupledSettings::new(threads) },
-        )?;
+        let recorder = settings.record.as_ref().map(|path| Recorder::create(path, &timeline)).transpose()?;
+        let how = DecoupledSettings {
+            slow_down: settings.slow_down,
+            count_areas: true,
+            recorder: recorder.clone(),
+            ..DecoupledSettings::new(threads)
+        };
+        let mut driver = Decoupled::start(timeline, how)?;
         // The scene numbers the bodies that its commands add after those that are there at first, and so do we.
         for _ in script.iter().filter(|c| matches!(c.change, Change::Add { .. })) {
             driver.reserve_body();
         }
         let scene = scene.name.clone();
-        Ok(DecoupledShow { driver, script, scene, samples: Vec::new(), computed: 0, recomputed: 0 })
+        Ok(DecoupledShow { driver, script, scene, samples: Vec::new(), computed: 0, recomputed: 0, recorder })
     }
 
     fn picture(&mut self, real_s: f64) -> Result<QueueRow, PlaybackError> {

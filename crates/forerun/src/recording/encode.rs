@@ -27,25 +27,31 @@ impl Encoder {
     /// Begins a file in `out`, with a timeline.
     pub(super) fn begin(start: &TimelineParts, out: &mut Vec<u8>) -> Result<Encoder, RecordingError> {
         let mut encoder = Encoder { writer: Writer::begin(out), shapes: StoredShapes::default() };
-        encoder.writer.add(&Record::Start(start_value(start)), out)?;
+        encoder.start(start, out)?;
+        Ok(encoder)
+    }
+
+    /// A timeline: the first, or another one.
+    pub(super) fn start(&mut self, start: &TimelineParts, out: &mut Vec<u8>) -> Result<(), RecordingError> {
+        self.writer.add(&Record::Start(start_value(start)), out)?;
         for names in start.names.chunks(NAMES_AT_A_TIME) {
-            encoder.add(out, |to| Record::Names(names.iter().map(|name| to.name(name)).collect()))?;
+            self.add(out, |to| Record::Names(names.iter().map(|name| to.name(name)).collect()))?;
         }
         for command in &start.commands {
-            encoder.add(out, |to| Record::Command(to.command(command)))?;
+            self.add(out, |to| Record::Command(to.command(command)))?;
         }
         for order in &start.undo {
-            encoder.add(out, |to| Record::Undo(to.order(order)))?;
+            self.add(out, |to| Record::Undo(to.order(order)))?;
         }
         for order in &start.redo {
-            encoder.add(out, |to| Record::Redo(to.order(order)))?;
+            self.add(out, |to| Record::Redo(to.order(order)))?;
         }
         let first = start.names.iter().map(|name| name.body.map(|body| body.state));
         let mut last = LastStates::new(first);
         for entries in &start.frames {
-            encoder.writer.add(&Record::Frame(last.encode(entries)), out)?;
+            self.writer.add(&Record::Frame(last.encode(entries)), out)?;
         }
-        Ok(encoder)
+        Ok(())
     }
 
     pub(super) fn order(&mut self, order: &Order, out: &mut Vec<u8>) -> Result<(), RecordingError> {
@@ -88,6 +94,7 @@ impl Recording {
             match event {
                 Event::Order(order) => encoder.order(order, &mut bytes)?,
                 Event::Mark(mark) => encoder.mark(mark, &mut bytes)?,
+                Event::Restart(parts) => encoder.start(parts, &mut bytes)?,
             }
         }
         encoder.end(&mut bytes)?;

@@ -21,7 +21,7 @@ pub(super) const VERSION: u32 = 1;
 /// One record. The number of the variant is the first byte: new ones go to the end.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Record {
-    /// Settings and frames; always the first.
+    /// Settings and frames; always the first, and again where another timeline takes the place of the one before.
     Start(StartValue),
     /// A shape that others refer to by how many of these came before it.
     Shape(LargeShape),

@@ -24,6 +24,7 @@ pub(super) struct StartValue {
     past: u32,
     bytes_max: Option<u64>,
     area_m: Option<f32>,
+    record_contacts: bool,
     display: u64,
     oldest: u64,
     next_sequence: u64,
@@ -86,13 +87,14 @@ struct BodyValue {
 
 /// The settings and frames of a timeline.
 pub(super) fn start_value(parts: &TimelineParts) -> StartValue {
-    let TimelineSettings { lookahead, past, bytes_max, area_m } = parts.settings;
+    let TimelineSettings { lookahead, past, bytes_max, area_m, record_contacts } = parts.settings;
     StartValue {
         program: env!("CARGO_PKG_VERSION").to_owned(),
         lookahead,
         past,
         bytes_max: bytes_max.map(|bytes| bytes as u64),
         area_m,
+        record_contacts,
         display: parts.display.0,
         oldest: parts.oldest.0,
         next_sequence: parts.next_sequence,
@@ -111,6 +113,7 @@ pub(super) fn start_of(value: StartValue) -> TimelineParts {
             // More than this machine could hold is no bound.
             bytes_max: value.bytes_max.map(|bytes| usize::try_from(bytes).unwrap_or(usize::MAX)),
             area_m: value.area_m,
+            record_contacts: value.record_contacts,
         },
         display: Frame(value.display),
         oldest: Frame(value.oldest),

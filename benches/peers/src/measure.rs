@@ -1,0 +1,108 @@
+//! Measure: one engine on one scene in a process of its own: either its times and memory, or its quality. The two never mix: a meter between two
+//! steps empties the caches of the second.
+
+use std::fs;
+
+use cpu_time::ProcessTime;
+use forerun::{Clock, Scene};
+use serde::{Deserialize, Serialize};
+
+use crate::engine::{self, Kind};
+use crate::quality::{Meter, Quality};
+use crate::stage::Stage;
+
+/// What a process is asked for.
+#[derive(Clone, Debug)]
+pub(crate) struct Task {
+    pub(crate) scene: String,
+    pub(crate) kind: Kind,
+    pub(crate) frames: u32,
+    pub(crate) threads: u16,
+}
+
+/// What it answers, as a line of JSON.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Answer {
+    Times(Times),
+    Quality(Quality),
+    /// The engine cannot do this scene, and why.
+    Cannot(String),
+}
+
+/// Time of every step, and memory.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Times {
+    /// CPU time of the whole process on one thread, wall time on several; the first step is the first. Milliseconds.
+    pub(crate) steps_ms: Vec<f64>,
+    /// Most memory that was resident from before the engine's world was built. Bytes.
+    pub(crate) peak_bytes: Option<u64>,
+}
+
+/// Steps and takes the time of each step.
+pub(crate) fn times(task: &Task) -> Answer {
+    let run = || {
+        let stage = Stage::of(&open(&task.scene)?)?;
+        restart_peak();
+        let mut world = engine::build(task.kind, stage, task.threads)?;
+        let stopwatch = if task.threads == 1 { Stopwatch::Cpu } else { Stopwatch::Wall(Clock::system()) };
+        let mut steps_ms = Vec::with_capacity(task.frames as usize);
+        for _ in 0..task.frames {
+            let start_ms = stopwatch.read_ms();
+            world.step()?;
+            steps_ms.push(stopwatch.read_ms() - start_ms);
+        }
+        Ok(Times { steps_ms, peak_bytes: peak_bytes() })
+    };
+    run().map_or_else(Answer::Cannot, Answer::Times)
+}
+
+/// Steps and looks at the poses.
+pub(crate) fn quality(task: &Task) -> Answer {
+    let run = || {
+        let scene = open(&task.scene)?;
+        let mut meter = Meter::new(&scene)?;
+        let mut world = engine::build(task.kind, Stage::of(&scene)?, task.threads)?;
+        for frame in 0..task.frames {
+            world.step()?;
+            if Meter::is_due(frame, task.frames) {
+                meter.look_at(&world.motions());
+            }
+        }
+        Ok(meter.finish())
+    };
+    run().map_or_else(Answer::Cannot, Answer::Quality)
+}
+
+fn open(scene: &str) -> Result<Scene, String> {
+    Scene::open(scene).map_err(|error| error.to_string())
+}
+
+/// What a step's time is taken with.
+enum Stopwatch {
+    /// Of all threads of the process, so that none can hide.
+    Cpu,
+    Wall(Clock),
+}
+
+impl Stopwatch {
+    /// A reading of which only differences mean something. Milliseconds.
+    fn read_ms(&self) -> f64 {
+        match self {
+            Stopwatch::Cpu => 1000.0 * ProcessTime::now().as_duration().as_secs_f64(),
+            Stopwatch::Wall(clock) => 1000.0 * clock.now().as_secs_f64(),
+        }
+    }
+}
+
+/// Lets the peak start again from what is in use now. Linux only; elsewhere there is no peak to tell.
+fn restart_peak() {
+    let _ = fs::write("/proc/self/clear_refs", "5");
+}
+
+fn peak_bytes() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
+}

@@ -1,0 +1,252 @@
+//! Rounds: every engine in turn, each time in a process of its own, and what is made of all the times.
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::{env, fmt};
+
+use forerun::Scene;
+use serde::Serialize;
+
+use crate::engine::Kind;
+use crate::measure::{Answer, Task, Times};
+use crate::native::{self, Threaded};
+use crate::quality::Quality;
+use crate::stage::Stage;
+
+/// What is compared.
+#[derive(Clone, Debug)]
+pub(crate) struct Plan {
+    pub(crate) scenes: Vec<SceneAndFrames>,
+    pub(crate) engines: Vec<Kind>,
+    pub(crate) threads: Vec<u16>,
+    pub(crate) rounds: u32,
+}
+
+/// A scene as it was typed, and how far it is run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SceneAndFrames {
+    pub(crate) scene: String,
+    pub(crate) frames: u32,
+}
+
+/// One engine on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Row {
+    pub(crate) scene: String,
+    pub(crate) bodies: usize,
+    pub(crate) frames: u32,
+    pub(crate) threads: u16,
+    pub(crate) kind: Kind,
+    pub(crate) engine: String,
+    #[serde(flatten)]
+    pub(crate) outcome: Outcome,
+}
+
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Outcome {
+    Measured(Measured),
+    Cannot(String),
+}
+
+/// Times of a step, the first left out. Each step's time is the smallest of all rounds: every round computes the same, so what is above was the machine.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Measured {
+    pub(crate) first_ms: f64,
+    pub(crate) mean_ms: f64,
+    pub(crate) median_ms: f64,
+    pub(crate) p99_ms: f64,
+    pub(crate) max_ms: f64,
+    /// Mean of each round by itself: how far they differ says how far to trust the others.
+    pub(crate) round_means_ms: Vec<f64>,
+    pub(crate) peak_bytes: Option<u64>,
+    pub(crate) quality: Quality,
+}
+
+/// Where the programs lie.
+struct Programs {
+    ours: PathBuf,
+    one_thread: PathBuf,
+    threads: PathBuf,
+}
+
+impl Programs {
+    /// Builds what the plan needs.
+    fn build(plan: &Plan) -> Result<Self, String> {
+        let ours = env::current_exe().map_err(|error| error.to_string())?;
+        let peers = plan.engines.iter().any(|kind| *kind != Kind::Forerun);
+        let build = |wanted: bool, threaded| if wanted { native::build(threaded) } else { Ok(ours.clone()) };
+        Ok(Programs {
+            one_thread: build(peers && plan.threads.contains(&1), Threaded::No)?,
+            threads: build(peers && plan.threads.iter().any(|count| *count > 1), Threaded::Yes)?,
+            ours,
+        })
+    }
+
+    fn of(&self, task: &Task) -> &PathBuf {
+        match (task.kind, task.threads) {
+            (Kind::Forerun, _) => &self.ours,
+            (_, 1) => &self.one_thread,
+            _ => &self.threads,
+        }
+    }
+}
+
+/// Runs the whole plan. Scenes are opened before anything is built: a misspelt name is not to cost minutes.
+pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
+    let mut stages = Vec::new();
+    for SceneAndFrames { scene, .. } in &plan.scenes {
+        let opened = Scene::open(scene).map_err(|error| error.to_string())?;
+        let stage = Stage::of(&opened)?;
+        stages.push((stage.actors.len(), stage.has_moving_meshes()));
+    }
+    let programs = Programs::build(plan)?;
+    let mut rows = Vec::new();
+    for (SceneAndFrames { scene, frames }, (bodies, meshes)) in plan.scenes.iter().zip(stages) {
+        let fits = |kind: &&Kind| meshes || **kind != Kind::RapierTriangles;
+        let kinds: Vec<Kind> = plan.engines.iter().filter(fits).copied().collect();
+        for &threads in &plan.threads {
+            let task = |kind: &Kind| Task { scene: scene.clone(), kind: *kind, frames: *frames, threads };
+            let tasks: Vec<Task> = kinds.iter().map(task).collect();
+            let outcomes = compare(&programs, &tasks, plan.rounds);
+            rows.extend(tasks.into_iter().zip(outcomes).map(|(task, outcome)| Row {
+                scene: task.scene,
+                bodies,
+                frames: task.frames,
+                threads,
+                kind: task.kind,
+                engine: task.kind.label(),
+                outcome,
+            }));
+        }
+    }
+    Ok(rows)
+}
+
+/// Quality of each first, then the rounds, each beginning with another engine.
+fn compare(programs: &Programs, tasks: &[Task], rounds: u32) -> Vec<Outcome> {
+    let qualities: Vec<Result<Quality, String>> =
+        tasks.iter().map(|task| quality_of(programs, task)).collect();
+    let mut times: Vec<Result<Vec<Times>, String>> = tasks.iter().map(|_| Ok(Vec::new())).collect();
+    for round in 0..rounds as usize {
+        for turn in 0..tasks.len() {
+            let i = (turn + round) % tasks.len();
+            if let (Ok(all), Ok(_)) = (&mut times[i], &qualities[i]) {
+                eprintln!("round {} of {rounds}: {}", round + 1, tasks[i]);
+                match times_of(programs, &tasks[i]) {
+                    Ok(one) => all.push(one),
+                    Err(why) => times[i] = Err(why),
+                }
+            }
+        }
+    }
+    qualities
+        .into_iter()
+        .zip(times)
+        .map(|(quality, times)| match (quality, times) {
+            (Ok(quality), Ok(times)) => Outcome::Measured(measured(quality, &times)),
+            (Err(why), _) | (_, Err(why)) => Outcome::Cannot(why),
+        })
+        .collect()
+}
+
+impl fmt::Display for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {} frames, {} threads, {}", self.scene, self.frames, self.threads, self.kind.label())
+    }
+}
+
+fn quality_of(programs: &Programs, task: &Task) -> Result<Quality, String> {
+    eprintln!("quality: {task}");
+    match ask(programs, task, &["--quality"])? {
+        Answer::Quality(quality) => Ok(quality),
+        Answer::Cannot(why) => Err(why),
+        Answer::Times(_) => Err("answered with times when asked for quality".to_owned()),
+    }
+}
+
+fn times_of(programs: &Programs, task: &Task) -> Result<Times, String> {
+    match ask(programs, task, &[])? {
+        Answer::Times(times) => Ok(times),
+        Answer::Cannot(why) => Err(why),
+        Answer::Quality(_) => Err("answered with quality when asked for times".to_owned()),
+    }
+}
+
+/// Starts a process for the task and reads its answer.
+fn ask(programs: &Programs, task: &Task, flags: &[&str]) -> Result<Answer, String> {
+    let kind = serde_json::to_value(task.kind).map_err(|error| error.to_string())?;
+    let output = Command::new(programs.of(task))
+        .arg(&task.scene)
+        .args(["--frames", &task.frames.to_string(), "--threads", &task.threads.to_string()])
+        .args(["--one", kind.as_str().unwrap_or_default()])
+        .args(flags)
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|error| format!("its process cannot be started: {error}"))?;
+    if !output.status.success() {
+        return Err(format!("its process ended with {}", output.status));
+    }
+    // Engines print too, before and after: the answer is the line that can be read.
+    let text = String::from_utf8_lossy(&output.stdout);
+    let answer = text.lines().find_map(|line| serde_json::from_str(line).ok());
+    answer.ok_or_else(|| format!("its process gave no answer, but \"{}\"", text.trim()))
+}
+
+fn measured(quality: Quality, rounds: &[Times]) -> Measured {
+    let mean = |times: &[f64]| times.iter().sum::<f64>() / times.len().max(1) as f64;
+    let later = |times: &Times| times.steps_ms.get(1..).unwrap_or_default().to_vec();
+    let round_means_ms = rounds.iter().map(|times| mean(&later(times))).collect();
+    let steps = rounds.iter().map(|times| times.steps_ms.len()).min().unwrap_or(0);
+    let smallest =
+        |step: usize| rounds.iter().map(|times| times.steps_ms[step]).fold(f64::INFINITY, f64::min);
+    let steps_ms: Vec<f64> = (0..steps).map(smallest).collect();
+    let mut sorted = steps_ms.get(1..).unwrap_or_default().to_vec();
+    sorted.sort_by(f64::total_cmp);
+    Measured {
+        first_ms: steps_ms.first().copied().unwrap_or(0.0),
+        mean_ms: mean(&sorted),
+        median_ms: rank(&sorted, 0.5),
+        p99_ms: rank(&sorted, 0.99),
+        max_ms: rank(&sorted, 1.0),
+        round_means_ms,
+        peak_bytes: rounds.iter().filter_map(|times| times.peak_bytes).min(),
+        quality,
+    }
+}
+
+/// Nearest rank: the smallest value that is not below the given part of all values. 0 of none.
+fn rank(sorted: &[f64], part: f64) -> f64 {
+    let place = (part * sorted.len() as f64).ceil() as usize;
+    sorted.get(place.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quality::Own;
+
+    #[test]
+    fn each_step_counts_with_its_best_round_and_the_first_stands_apart() {
+        let quality = Quality {
+            overlap_max_m: 0.0,
+            overlap_end_m: 0.0,
+            energy_max_over_initial: None,
+            speed_end: 0.0,
+            own: Own::Lost { count: 0 },
+            not_finite: 0,
+        };
+        let times = |steps_ms: &[f64], peak| Times { steps_ms: steps_ms.to_vec(), peak_bytes: Some(peak) };
+        let rounds = [times(&[9.0, 1.0, 4.0, 3.0], 70), times(&[8.0, 2.0, 2.0, 5.0], 60)];
+        let m = measured(quality, &rounds);
+        assert_eq!((m.first_ms, m.median_ms, m.p99_ms, m.max_ms), (8.0, 2.0, 3.0, 3.0));
+        assert!((m.mean_ms - 2.0).abs() < 1e-12);
+        assert_eq!(m.peak_bytes, Some(60));
+        assert!((m.round_means_ms[1] - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ranks_of_few_and_none() {
+        assert_eq!((rank(&[], 0.99), rank(&[3.0], 0.5), rank(&[1.0, 2.0], 0.5)), (0.0, 3.0, 1.0));
+    }
+}

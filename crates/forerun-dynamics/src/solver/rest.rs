@@ -1,0 +1,212 @@
+//! Rest: who has come to rest, and who goes on.
+//!
+//! Rest is part of the state. A body that was quiet for `rest_frames` frames keeps its pose and no velocity, and is still solved: when its support
+//! goes, it moves. One more than `rest_frames` says that the whole island was so for a frame: a fixpoint that need not be solved.
+//!
+//! Quiet is a body that rattles in its place. One that goes on its way, however slowly, is not, and nor is what it takes along.
+
+use forerun_geometry::{Quat, Shape, Vec3};
+
+use super::islands::Islands;
+use crate::narrow_phase::Contact;
+use crate::{BodyState, Environment, Member, StepSettings};
+
+/// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
+const SHALLOW_REST: u32 = 4;
+
+/// A body that overlaps deeper than this part of its half thickness does not come to rest, however little that is.
+const REST_PART: f32 = 0.1;
+/// A body that is farther than this from all others has nothing to rest on. Metres.
+const REST_TOUCH_M: f32 = 0.001;
+
+/// What the end of a frame needs to know about one body besides its rows.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Ending {
+    /// The angular velocity with which the contacts started. rad/s
+    pub(crate) spin: Vec3,
+    /// Deepest overlap with anybody at the start of the frame. Metres.
+    pub(crate) overlap: f32,
+    /// Whether it touches anybody, and is not only about to.
+    pub(crate) touches: bool,
+    /// Whether it overlaps too deep to come to rest, or touches one that does: there must be room to push it out.
+    pub(crate) crammed: bool,
+}
+
+/// A body that goes on its way faster than this part of `rest_speed` is not quiet.
+const DRIFT_PART: f32 = 0.1;
+/// The same for balls and capsules: nothing in the step brakes their rolling, and slower than this what resists it in nature stops one within seconds.
+const ROLL_PART: f32 = 0.4;
+/// A body may turn so much faster than `rest_speed` while it is pushed out of overlaps on all sides, and a ball that others hold.
+const TURNS: f32 = 2.0;
+/// What goes on its way changes its velocity by less than this part of it in a frame: uniform acceleration does after eight frames.
+const UNSTEADY: f32 = 0.125;
+
+/// What the end of a frame needs to know of its contacts, and of who drives whom.
+pub(crate) struct IslandsAt<'a> {
+    pub(crate) islands: &'a Islands,
+    /// By root: whether a moving kinematic body touches the island.
+    pub(crate) driven: &'a [bool],
+    pub(crate) contacts: &'a [Contact],
+}
+
+/// What contacts tell of the bodies at the end of a frame that started with these spins.
+pub(crate) fn endings(
+    members: &[Member],
+    contacts: &[Contact],
+    spins: &[Vec3],
+    settings: &StepSettings,
+) -> Vec<Ending> {
+    let mut endings: Vec<Ending> = spins.iter().map(|&spin| Ending { spin, ..Ending::default() }).collect();
+    let touching = || contacts.iter().filter(|c| c.manifold.deepest() < REST_TOUCH_M);
+    for c in touching() {
+        for i in [c.first as usize, c.second as usize] {
+            endings[i].overlap = endings[i].overlap.max(-c.manifold.deepest());
+            endings[i].touches = true;
+        }
+    }
+    let deep = |i: usize| {
+        let body = members[i].body;
+        body.is_dynamic() && endings[i].overlap > settings.rest_overlap_m.min(REST_PART * body.half_thickness)
+    };
+    let deep: Vec<bool> = (0..members.len()).map(deep).collect();
+    for c in touching() {
+        let crammed = deep[c.first as usize] || deep[c.second as usize];
+        endings[c.first as usize].crammed |= crammed;
+        endings[c.second as usize].crammed |= crammed;
+    }
+    endings
+}
+
+/// Counts the quiet frames of each body, and stops those that have come to rest.
+pub(crate) fn settle(
+    members: &[Member],
+    next: &mut [BodyState],
+    endings: &[Ending],
+    at: &IslandsAt,
+    environment: &Environment,
+) {
+    let full = environment.settings.rest_frames();
+    if full == 0 {
+        next.iter_mut().for_each(|state| state.rest = 0);
+        return;
+    }
+    let islands = at.islands;
+    let carried = carried(members, next, at.contacts, environment);
+    let mut fixpoint = vec![true; members.len()];
+    for (i, member) in members.iter().enumerate() {
+        if !member.body.is_dynamic() {
+            continue;
+        }
+        // What a moving body carries or pushes goes with it, however slowly.
+        let held = endings[i].touches && !at.driven[islands.root(i)] && !carried[i];
+        let calm = held && quiet(member, &next[i], environment);
+        next[i].rest = if calm { counted(member, &endings[i], environment) } else { 0 };
+        if next[i].rest < full || member.state.rest < full {
+            fixpoint[islands.root(i)] = false;
+        }
+    }
+    for (i, member) in members.iter().enumerate() {
+        if member.body.is_dynamic() && next[i].rest == full {
+            let rest = if fixpoint[islands.root(i)] { full + 1 } else { full };
+            let pose = member.state;
+            next[i] = BodyState { velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO, rest, ..pose };
+        }
+    }
+}
+
+/// The rest counter of a body after one more quiet frame.
+fn counted(member: &Member, ending: &Ending, environment: &Environment) -> u32 {
+    let settings = &environment.settings;
+    let full = settings.rest_frames();
+    let counted = (member.state.rest + 1).min(full);
+    let shallow = ending.overlap < 2.0 * settings.overlap_allowed_m;
+    if ending.crammed {
+        // Pushed on, even out of rest: a body between two frozen ones could not get out.
+        counted.min(full - 1)
+    } else if shallow && counted >= full.div_ceil(SHALLOW_REST) {
+        full
+    } else {
+        counted
+    }
+}
+
+/// What moves with another at the point where they touch, but for this part, is taken along; and it may slow the other by as much.
+const FOLLOWS: f32 = 0.2;
+
+/// Bodies that one which goes on its way takes along where they touch.
+fn carried(
+    members: &[Member],
+    next: &[BodyState],
+    contacts: &[Contact],
+    environment: &Environment,
+) -> Vec<bool> {
+    let drifting: Vec<bool> = (members.iter().zip(next))
+        .map(|(m, next)| m.body.is_dynamic() && drifts(m, next, environment, FOLLOWS))
+        .collect();
+    let limit = DRIFT_PART * environment.settings.rest_speed;
+    let limit2 = limit * limit;
+    let mut carried = vec![false; members.len()];
+    for c in contacts.iter().filter(|c| c.manifold.deepest() < REST_TOUCH_M) {
+        let point = c.manifold.points[0].position;
+        for (mover, other) in [(c.first as usize, c.second as usize), (c.second as usize, c.first as usize)] {
+            if drifting[mover] && members[other].body.is_dynamic() {
+                let (leads, follows) = (next[mover].velocity_at(point), next[other].velocity_at(point));
+                // A ball that rolls stands still where it touches.
+                let speed2 = leads.length_squared();
+                let along = (leads - follows).length_squared() < FOLLOWS * FOLLOWS * speed2;
+                carried[other] |= along && speed2 > limit2;
+            }
+        }
+    }
+    carried
+}
+
+/// The rest counter after a frame that was done in slices: quiet or not over the whole of it, and never at rest.
+pub(crate) fn rest_after_slices(member: &Member, next: &BodyState, environment: &Environment) -> u32 {
+    let full = environment.settings.rest_frames();
+    let calm = full > 0 && member.body.is_dynamic() && quiet(member, next, environment);
+    if calm { (member.state.rest + 1).min(full - 1) } else { 0 }
+}
+
+/// Whether neither velocity nor change of pose shows, and the body does not go on its way.
+fn quiet(member: &Member, next: &BodyState, environment: &Environment) -> bool {
+    let (shift, turn) = pace(member, next, environment);
+    let r2 = member.body.radius * member.body.radius;
+    let limit2 = environment.settings.rest_speed * environment.settings.rest_speed;
+    // A ball that others hold turns in its place, and that moves nothing.
+    let spin2 = if matches!(member.body.shape, Shape::Sphere(_)) { TURNS * TURNS * limit2 } else { limit2 };
+    next.velocity.length_squared() < limit2
+        && next.angular_velocity.length_squared() * r2 < spin2
+        && shift.length_squared() < limit2
+        && turn.length_squared() * r2 < TURNS * TURNS * limit2
+        && !drifts(member, next, environment, UNSTEADY)
+}
+
+/// Whether the body goes on its way: it moved as its velocity said before, and says still, but for this part. What rattles does not.
+fn drifts(member: &Member, next: &BodyState, environment: &Environment, unsteady: f32) -> bool {
+    let (shift, turn) = pace(member, next, environment);
+    let ball = matches!(member.body.shape, Shape::Sphere(_));
+    let rolls = ball || matches!(member.body.shape, Shape::Capsule(_));
+    let limit = environment.settings.rest_speed * if rolls { ROLL_PART } else { DRIFT_PART };
+    let steady = |moved: Vec3, before: Vec3, after: Vec3, limit: f32| {
+        let moved2 = moved.length_squared();
+        let unsteady2 = unsteady * unsteady * moved2;
+        moved2 > limit * limit
+            && (moved - before).length_squared() < unsteady2
+            && (moved - after).length_squared() < unsteady2
+    };
+    let state = &member.state;
+    // The turning of a ball in its place moves nothing.
+    steady(shift, state.velocity, next.velocity, limit)
+        || !ball && steady(turn, state.angular_velocity, next.angular_velocity, limit / member.body.radius)
+}
+
+/// Mean velocity and angular velocity over the frame, from the change of pose.
+fn pace(member: &Member, next: &BodyState, environment: &Environment) -> (Vec3, Vec3) {
+    let per_second = 1.0 / environment.settings.frame_seconds;
+    let shift = (next.position - member.state.position) * per_second;
+    // The vector part is half the turn, for turns this small; the sign of a quaternion has no meaning.
+    let turn: Quat = next.rotation * member.state.rotation.conjugate();
+    let half = Vec3::new(turn.x, turn.y, turn.z) * if turn.w < 0.0 { -1.0 } else { 1.0 };
+    (shift, half * (2.0 * per_second))
+}
