@@ -16,7 +16,7 @@ const SLOPE_MAX: f64 = 1.0;
 /// Memory is watched after this part of the time.
 const WARM_PART: f64 = 0.2;
 /// A slope over less than this says nothing. Seconds.
-const SLOPE_SECONDS_MIN: f64 = 60.0;
+const SLOPE_SECONDS_MIN: f64 = 300.0;
 
 /// The result; the fields are those of `soak --json`.
 #[derive(Debug, Serialize)]
@@ -43,10 +43,15 @@ struct Verdict {
     sleeper: Lateness,
     /// Time spent in show and `sample_all`; late are those over 1/fps.
     work: Lateness,
+    /// Processor time of the display thread from picture to picture, with what the soak does there; late are those over 1/fps.
+    ran: Lateness,
     seen: Seen,
     rss_warm_mib: Option<f64>,
     rss_end_mib: Option<f64>,
     rss_slope_mib_per_min: Option<f64>,
+    /// The stored states among it.
+    states_end_mib: Option<f64>,
+    states_slope_mib_per_min: Option<f64>,
     frames_compared: u64,
     mismatches: u64,
     failed: Vec<String>,
@@ -92,6 +97,9 @@ pub(crate) fn run(args: &SoakArgs) -> Result<(), Failure> {
 fn verdict(args: &SoakArgs, soaked: &Soaked) -> Verdict {
     let warm: Vec<(f64, f64)> =
         soaked.memory.iter().copied().filter(|(at_s, _)| *at_s >= WARM_PART * args.seconds).collect();
+    let states: Vec<(f64, f64)> =
+        soaked.states.iter().copied().filter(|(at_s, _)| *at_s >= WARM_PART * args.seconds).collect();
+    let states_slope = slope(&states).filter(|_| args.seconds >= SLOPE_SECONDS_MIN);
     let slope = slope(&warm).filter(|_| args.seconds >= SLOPE_SECONDS_MIN);
     let Soaked { seen, edits, .. } = soaked;
     let all =
@@ -132,10 +140,13 @@ fn verdict(args: &SoakArgs, soaked: &Soaked) -> Verdict {
         late_ours: soaked.late_ours,
         sleeper: soaked.sleeper,
         work: soaked.work,
+        ran: soaked.ran,
         seen: *seen,
         rss_warm_mib: warm.first().map(|(_, mib)| *mib),
         rss_end_mib: warm.last().map(|(_, mib)| *mib),
         rss_slope_mib_per_min: slope,
+        states_end_mib: states.last().map(|(_, mib)| *mib),
+        states_slope_mib_per_min: states_slope,
         frames_compared: soaked.frames_compared,
         mismatches: soaked.mismatches,
         failed,
@@ -153,7 +164,7 @@ fn slope(values: &[(f64, f64)]) -> Option<f64> {
 }
 
 fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
-    let Verdict { seen, intervals, sleeper, work, .. } = verdict;
+    let Verdict { seen, intervals, sleeper, work, ran, .. } = verdict;
     print(&format!(
         "{}: {} bodies, {:.0} s at {} pictures per second, {} edits, {} stalls of {:.1} s together, seed {}",
         verdict.scene,
@@ -173,7 +184,8 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
     };
     lateness("from picture to picture", intervals)?;
     lateness("a thread that only sleeps", sleeper)?;
-    lateness("spent on a picture", work)?;
+    lateness("until a picture could be drawn", work)?;
+    lateness("processor time of it all", ran)?;
     let line = |name: &str, value: String| print(&format!("  {name:<34} {value:>8}"));
     line("late pictures of our making", verdict.late_ours.to_string())?;
     line("steps back in time", seen.backward_steps.to_string())?;
@@ -185,7 +197,7 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
         format!("{:.2} s, {:.2} s", seen.delay_max_s, seen.delay_end_s),
     )?;
     line("frames computed, again", format!("{}, {}", verdict.frames_ahead, verdict.frames_again))?;
-    line("fewest frames ahead", seen.ahead_min.to_string())?;
+    line("fewest frames ahead", seen.ahead_min.map_or_else(|| "-".to_owned(), |frames| frames.to_string()))?;
     line(
         "pushes seen, within 2 pictures, at most",
         format!("{}, {}, {} pictures", seen.pushes_seen, seen.pushes_in_two, seen.push_pictures_max),
@@ -205,6 +217,10 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
             mib(verdict.rss_end_mib),
             mib(verdict.rss_slope_mib_per_min)
         ),
+    )?;
+    line(
+        "of it states, end, slope a minute",
+        format!("{}, {} MiB", mib(verdict.states_end_mib), mib(verdict.states_slope_mib_per_min)),
     )?;
     line("frames compared with a full run", verdict.frames_compared.to_string())?;
     line("states that differ", verdict.mismatches.to_string())

@@ -9,8 +9,8 @@ use forerun::dynamics::Spring;
 use forerun::timeline::Sample;
 use forerun::timeline::check::Random;
 use forerun::{
-    BodyDef, BodyId, Change, Command, CommandKey, Decoupled, DriverError, Frame, Material, Picture, Pose,
-    Shape, Sphere, Vec3,
+    BodyDef, BodyId, Change, Command, CommandKey, Cuboid, Decoupled, DriverError, Frame, Material, Picture,
+    Pose, Shape, Vec3,
 };
 use serde::Serialize;
 
@@ -18,6 +18,8 @@ use serde::Serialize;
 const ADDED_MAX: usize = 30;
 /// Commands that may be thought better of.
 const REMEMBERED: usize = 32;
+/// A command that acted longer ago is not thought better of. Frames: well within what is kept, so that no command is forgotten while it is.
+const RECENT_MAX: u64 = 300;
 /// How late a command comes from the network, at most. Frames.
 const LATE_MAX: u64 = 60;
 /// How far ahead a command is given, at most. Frames.
@@ -37,6 +39,13 @@ pub(crate) struct Edits {
     pub(crate) dragged: u64,
     /// Orders that found the queue full.
     pub(crate) queue_full: u64,
+}
+
+impl Edits {
+    /// Orders that took something back, or did it again.
+    pub(super) fn taken_back(&self) -> u64 {
+        self.retracted + self.replaced + self.undone + self.redone
+    }
 }
 
 /// Makes edits.
@@ -129,7 +138,8 @@ impl Editor {
     ) -> Result<Done, DriverError> {
         let roll = self.random.below(100);
         let remembered = self.random.below(self.recent.len() as u64) as usize;
-        let recent = self.recent.get(remembered).copied();
+        let still = |key: &CommandKey| key.frame.plus(RECENT_MAX) > picture.frame;
+        let recent = self.recent.get(remembered).copied().filter(still);
         match (roll, recent) {
             (0..6, Some(_)) => {
                 self.edits.undone += 1;
@@ -205,7 +215,9 @@ impl Editor {
             0 | 1 if self.added.len() < ADDED_MAX => {
                 let near = self.pick(picture, samples)?.1.pose.position;
                 let position = near + self.random.vector() * 2.0 + Vec3::Y * 6.0;
-                let def = BodyDef::new(Shape::Sphere(Sphere { radius: 0.3 })).at(position);
+                // A box: a ball would roll for ever, and cost memory in every frame.
+                let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.25) });
+                let def = BodyDef::new(shape).at(position);
                 let body = driver.reserve_body();
                 self.added.push_back(body);
                 Some(Change::Add { body, def: Box::new(def) })

@@ -109,11 +109,22 @@ impl Drop for Hogs {
     }
 }
 
-/// How long this thread has been ready to run without a processor, where the system tells it (Linux). Seconds.
-pub(crate) fn starved_s() -> Option<f64> {
-    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().nth(1)?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
+/// What this thread had of its processor so far. Seconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Share {
+    /// It ran.
+    pub(crate) ran_s: f64,
+    /// It was ready to run and had none.
+    pub(crate) waited_s: f64,
+}
+
+impl Share {
+    /// So far, where the system tells it (Linux); else zeros, which explain nothing.
+    pub(crate) fn now() -> Share {
+        let text = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+        let mut seconds = text.split_whitespace().map(|field| 1e-9 * field.parse().unwrap_or(0.0));
+        Share { ran_s: seconds.next().unwrap_or(0.0), waited_s: seconds.next().unwrap_or(0.0) }
+    }
 }
 
 /// Memory that is resident, where the system tells it (Linux). MiB.

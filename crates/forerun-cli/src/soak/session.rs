@@ -13,15 +13,18 @@ use forerun::{
 
 use super::SoakSettings;
 use super::editor::{Done, Editor, Edits};
-use super::machine::{Hogs, Lateness, Sleeper, resident_mib, starved_s};
+use super::machine::{Hogs, Lateness, Share, Sleeper, resident_mib};
 use super::oracle::{Log, compare};
 use super::witness::{Seen, Witness};
 use crate::failure::Failure;
 
 /// Past that is kept. Longer than commands are late and forks take to come, so that no command is forgotten before it is noted.
 const PAST: u32 = 600;
+const MIB: f64 = 1_048_576.0;
 /// From one look at the commands to the next. Frames.
 const LEARN_EVERY: u64 = 120;
+/// The machine is as late as it was for the sleeper for so long before and after. Seconds.
+const NEAR_S: f64 = 0.1;
 /// Real time that is given to what has to come. It comes within a stall, on any machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -44,10 +47,14 @@ pub(crate) struct Soaked {
     pub(crate) sleeper: Lateness,
     /// Late pictures that the machine does not explain.
     pub(crate) late_ours: u64,
-    /// Most that was spent on a picture. Milliseconds.
+    /// From the beginning of a picture until it could be drawn.
     pub(crate) work: Lateness,
+    /// Processor time of the display thread from picture to picture, with what the soak itself does there.
+    pub(crate) ran: Lateness,
     /// Memory each second. Seconds, MiB.
     pub(crate) memory: Vec<(f64, f64)>,
+    /// Of it, the stored states, which follow how much moves. Seconds, MiB.
+    pub(crate) states: Vec<(f64, f64)>,
     pub(crate) frames_compared: u64,
     pub(crate) mismatches: u64,
     pub(crate) first_mismatch: Option<Mismatch>,
@@ -61,12 +68,12 @@ struct Stalls {
     microseconds: AtomicU64,
 }
 
-/// One picture: when it began and ended, and how long its thread had been ready without a processor by then. Seconds.
+/// One picture: when it began and ended (seconds), and what its thread had of a processor by then.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moment {
     began_s: f64,
     ended_s: f64,
-    starved_s: f64,
+    share: Share,
 }
 
 /// Plays the scene while it is edited and its physics stalls, and compares what is kept at the end with a full simulation.
@@ -187,14 +194,19 @@ impl Session<'_> {
             self.moments.push(Moment {
                 began_s: began.as_secs_f64(),
                 ended_s: ended.as_secs_f64(),
-                starved_s: starved_s().unwrap_or(0.0),
+                share: Share::now(),
             });
             self.witness.look(&picture, &samples, (blending, self.driver.offsets()));
             if self.editor.falls(self.settings.edits_per_second, interval.as_secs_f64()) {
+                let before = self.editor.edits;
                 match self.editor.edit(&mut self.driver, &picture, &samples)? {
                     Done::Something => {}
                     Done::Moved(body, frame) => self.witness.expect_move(body, frame),
                     Done::Pushed(body) => self.witness.expect_push(body, &picture),
+                }
+                if self.editor.edits.taken_back() != before.taken_back() {
+                    // Looked at at once: what was taken back may soon be too old to be seen missing.
+                    self.learned = 0;
                 }
             }
             if self.settings.drag {
@@ -206,6 +218,7 @@ impl Session<'_> {
             if shown_s as u64 >= second {
                 second += 1;
                 self.soaked.memory.extend(resident_mib().map(|mib| (shown_s, mib)));
+                self.soaked.states.push((shown_s, picture.stats.state_bytes as f64 / MIB));
             }
             on_picture(shown_s);
             due = (due + interval).max(self.clock.now() - start);
@@ -263,13 +276,16 @@ impl Session<'_> {
         let nap_lengths: Vec<f64> = naps.iter().map(|(from, to)| to - from).collect();
         self.soaked.pictures = Lateness::of(&intervals, limit_s);
         self.soaked.work = Lateness::of(&work, interval_s);
+        let ran: Vec<f64> = pairs.clone().map(|(a, b)| b.share.ran_s - a.share.ran_s).collect();
+        self.soaked.ran = Lateness::of(&ran, interval_s);
         self.soaked.sleeper = Lateness::of(&nap_lengths, limit_s);
         let slept_in = |from_s: f64, to_s: f64| {
-            // A nap that was longer than it should be, at the same time.
-            naps.iter().any(|(from, to)| to - from > 1.5 * interval_s && *from < to_s && from_s < *to)
+            // A nap that was longer than it should be, at the same time or nearly.
+            let near = |(from, to): &(f64, f64)| *from < to_s + NEAR_S && from_s < *to + NEAR_S;
+            naps.iter().any(|nap| nap.1 - nap.0 > 1.5 * interval_s && near(nap))
         };
         let ours = pairs.filter(|(before, now)| {
-            let waited_s = now.starved_s - before.starved_s;
+            let waited_s = now.share.waited_s - before.share.waited_s;
             let late_s = now.began_s - before.began_s;
             late_s > limit_s && late_s - waited_s > limit_s && !slept_in(before.began_s, now.began_s)
         });

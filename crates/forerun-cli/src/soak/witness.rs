@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use forerun::timeline::{Certainty, Sample};
-use forerun::{Blending, BodyId, Frame, Offset, Picture, Snapshot};
+use forerun::{Blending, BodyId, Frame, Offset, Picture, Snapshot, Vec3};
 use serde::Serialize;
 
 /// A body goes by more than so many times what its velocity and the blend explain: a jump.
@@ -12,6 +12,9 @@ const JUMP: f32 = 1.5;
 
 /// What needs no explanation: bodies that overlap are pushed apart without a velocity. Metres.
 const ALLOWED_M: f32 = 0.03;
+
+/// A push that is not seen for so long is not waited for.
+const PUSH_PICTURES_MAX: u64 = 600;
 
 /// What was seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -21,10 +24,13 @@ pub(crate) struct Seen {
     pub(crate) backward_steps: u64,
     /// Pictures whose time went on by more than 1.05 of what passed.
     pub(crate) forward_jumps: u64,
-    /// Bodies that went farther from one picture to the next than 1.5 times what explains it.
+    /// Bodies that went farther from one picture to the next than 1.5 times what explains it: their velocities, the blend, or the states
+    /// that they went through.
     pub(crate) teleports: u64,
     /// The farthest beyond that. Metres.
     pub(crate) teleport_max_m: f32,
+    /// Bodies that went farther than their velocities say because the physics pushed them apart, or many frames lay between two pictures.
+    pub(crate) pushed_apart: u64,
     /// Pictures whose clock was slowed because physics was late.
     pub(crate) slowed_pictures: u64,
     /// Slowest that the clock went, as a factor.
@@ -39,8 +45,8 @@ pub(crate) struct Seen {
     pub(crate) late_bodies: u64,
     /// Pictures in which the dragged body was shown late.
     pub(crate) dragged_late: u64,
-    /// Fewest frames that were ahead of a picture, the first second left out.
-    pub(crate) ahead_min: u64,
+    /// Fewest frames that were ahead of a picture, the first second left out; none when there was no more than that.
+    pub(crate) ahead_min: Option<u64>,
     /// Pushes by the local user that were followed until they were seen.
     pub(crate) pushes_seen: u64,
     /// Those of them that were seen in the second picture after the one they were given in, or before.
@@ -80,7 +86,7 @@ struct Push {
 
 impl Witness {
     pub(super) fn new() -> Witness {
-        let seen = Seen { rate_min: 1.0, ahead_min: u64::MAX, ..Seen::default() };
+        let seen = Seen { rate_min: 1.0, ..Seen::default() };
         Witness {
             seen,
             samples: Vec::new(),
@@ -114,6 +120,11 @@ impl Witness {
     fn look_for_push(&mut self, picture: &Picture) {
         let Some(push) = &mut self.push else { return };
         push.pictures += 1;
+        if push.pictures > PUSH_PICTURES_MAX {
+            // Taken back, it seems, before anybody could see it; and what was known before it is not to be kept for ever.
+            self.push = None;
+            return;
+        }
         let now = picture.snapshot.sample(push.body, picture.time_s);
         let then = push.before.sample(push.body, picture.time_s);
         let Some((now, then)) = now.zip(then) else {
@@ -146,7 +157,7 @@ impl Witness {
         self.look_for_push(picture);
         if picture.time_s > 1.0 {
             let ahead = picture.snapshot.horizon().since(picture.frame);
-            self.seen.ahead_min = self.seen.ahead_min.min(ahead);
+            self.seen.ahead_min = Some(self.seen.ahead_min.map_or(ahead, |least| least.min(ahead)));
         }
         self.seen.late_bodies +=
             samples.iter().filter(|(_, sample)| sample.certainty > Certainty::Presumed).count() as u64;
@@ -193,12 +204,29 @@ impl Witness {
             let moved = sample.pose.position.distance(was.pose.position);
             let beyond = moved - JUMP * explained - ALLOWED_M;
             if beyond > 0.0 && !self.is_moved(*body, picture.frame) {
+                if moved <= self.path_m(*body, picture) + offset_m * faded + 1e-3 {
+                    self.seen.pushed_apart += 1;
+                    continue;
+                }
                 self.seen.teleports += 1;
                 self.seen.teleport_max_m = self.seen.teleport_max_m.max(beyond);
             }
         }
         let shown = self.frame;
         self.moves.retain(|(_, frame)| *frame >= shown);
+    }
+
+    /// How far a body went since the picture before, from state to state, as is known now. Metres.
+    fn path_m(&self, body: BodyId, picture: &Picture) -> f32 {
+        let snapshot = &picture.snapshot;
+        let frames = (self.frame.0 + 1..=picture.frame.0).map(Frame);
+        let at_frames = frames.map(|frame| frame.seconds(snapshot.frame_seconds()));
+        let times = std::iter::once(self.time_s).chain(at_frames).chain([picture.time_s]);
+        let places: Vec<Vec3> = times
+            .filter_map(|time_s| snapshot.sample(body, time_s))
+            .map(|sample| sample.pose.position)
+            .collect();
+        places.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
     }
 
     /// Whether a command put the body elsewhere since the picture before.
