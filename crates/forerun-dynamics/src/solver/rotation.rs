@@ -23,7 +23,8 @@ fn turn(rotation: Vec3) -> Quat {
     let square = rotation.length_squared();
     if square > SERIES_MAX * SERIES_MAX && square.is_finite() {
         let half = turn(rotation * 0.5);
-        return half * half;
+        // A length that is off by a rounding would be squared with every doubling.
+        return (half * half).normalize();
     }
     // tan(a/2) / a to the sixth order: relative error below 1e-4 up to one radian.
     let tangent = 0.5 * (1.0 + square * (1.0 / 12.0 + square * (1.0 / 120.0 + square * (17.0 / 20160.0))));
@@ -89,4 +90,26 @@ fn small_turn(rotation: DVec3) -> DQuat {
     let tangent = 0.5 * (1.0 + square * (1.0 / 12.0 + square * (1.0 / 120.0 + square * (17.0 / 20160.0))));
     let v = rotation * tangent;
     DQuat::from_xyzw(v.x, v.y, v.z, 1.0).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spin_beyond_all_measure_leaves_a_rotation() {
+        for rotation in [Vec3::new(-2.5e9, -7.5e9, 3.1e10) / 60.0, Vec3::X * 1e18, Vec3::splat(300.0)] {
+            let q = turned(Quat::IDENTITY, rotation);
+            assert!((q.length() - 1.0).abs() < 1e-6, "{rotation}: {q}");
+        }
+    }
+
+    #[test]
+    fn a_turn_of_many_radians_is_the_one_that_is_asked_for() {
+        for angle in [0.3_f32, 2.0, 10.0, 100.0] {
+            let q = turned(Quat::IDENTITY, Vec3::Y * angle);
+            let expected = Quat::from_xyzw(0.0, libm::sinf(0.5 * angle), 0.0, libm::cosf(0.5 * angle));
+            assert!(q.dot(expected).abs() > 1.0 - 1e-5, "{angle}: {q}, expected {expected}");
+        }
+    }
 }
