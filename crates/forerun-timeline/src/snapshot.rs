@@ -54,7 +54,7 @@ pub struct Snapshot {
     /// The bodies that wait to be recomputed. Sorted by body.
     pub(crate) doubtful: Vec<Doubt>,
     /// What the commands of each frame did.
-    pub(crate) effects: Arc<BTreeMap<Frame, FrameEffects>>,
+    pub(crate) effects: Arc<BTreeMap<Frame, Arc<FrameEffects>>>,
 }
 
 /// A body that waits to be recomputed.
@@ -209,7 +209,7 @@ impl Snapshot {
             moment,
             here: self.tables.get(moment.frame),
             next: self.tables.get(next),
-            commanded: self.effects.get(&next),
+            commanded: self.effects.get(&next).map(AsRef::as_ref),
             environment: self.definitions.environment(moment.frame),
         }
     }

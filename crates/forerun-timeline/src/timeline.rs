@@ -69,7 +69,7 @@ pub struct Timeline {
     /// By frame below the horizon: what of the step that leaves it is out of date.
     pub(crate) stale: BTreeMap<Frame, Stale>,
     /// By frame: what its commands did.
-    pub(crate) effects: Arc<BTreeMap<Frame, FrameEffects>>,
+    pub(crate) effects: Arc<BTreeMap<Frame, Arc<FrameEffects>>>,
     pub(crate) areas: Areas,
     pub(crate) scratch: Scratch,
     /// Of the local user's next command.
@@ -269,8 +269,8 @@ impl Timeline {
 }
 
 /// How many commands did nothing.
-pub(crate) fn ignored(effects: &BTreeMap<Frame, FrameEffects>) -> u64 {
-    effects.values().flat_map(BTreeMap::values).map(|effect| u64::from(effect.ignored)).sum()
+pub(crate) fn ignored(effects: &BTreeMap<Frame, Arc<FrameEffects>>) -> u64 {
+    effects.values().flat_map(|frame| frame.values()).map(|effect| u64::from(effect.ignored)).sum()
 }
 
 /// An edge of areas that suits the bodies: four times the radius of the middle one of those that move. Metres.

@@ -67,7 +67,7 @@ impl Timeline {
             stale.bodies.insert(body, self.definitions.body(body, before).cloned());
             stale.touched.insert(body);
         }
-        for effect in self.effects.get(&horizon).into_iter().flatten() {
+        for effect in self.effects.get(&horizon).into_iter().flat_map(|effects| effects.iter()) {
             stale.touched.extend(&effect.1.woken);
         }
         stale
@@ -92,7 +92,7 @@ impl Timeline {
             stale,
             definitions: &definitions,
             areas: &self.areas,
-            effects: self.effects.get(&arrival),
+            effects: self.effects.get(&arrival).map(AsRef::as_ref),
             mutation: self.mutation,
         };
         let group = affected(&inputs, out_of_date, &mut self.scratch);
@@ -114,7 +114,10 @@ impl Timeline {
         let told = touches.map(|touches| Told::new(&entries, &group, &touches, table.touches(), outdated));
         // Forks and later edits share the effects: to touch them is to copy.
         let mut effects = match self.effects.contains_key(&arrival) {
-            true => Arc::make_mut(&mut self.effects).remove(&arrival).unwrap_or_default(),
+            true => Arc::make_mut(&mut self.effects)
+                .remove(&arrival)
+                .map(Arc::unwrap_or_clone)
+                .unwrap_or_default(),
             false => FrameEffects::default(),
         };
         let mut entries = arrived.apply_commands(entries, stale, &mut self.areas, &mut effects);
@@ -123,7 +126,7 @@ impl Timeline {
         }
         arrived.visit(&entries, &mut self.areas);
         if !effects.is_empty() {
-            Arc::make_mut(&mut self.effects).insert(arrival, effects);
+            Arc::make_mut(&mut self.effects).insert(arrival, Arc::new(effects));
         }
 
         let (mut new, changed) = stored.with_entries(&entries, &table);
