@@ -14,7 +14,7 @@ const THREADS: [u16; 3] = [1, 2, 4];
 const SCENES: [(&str, u32); 6] = [
     ("many_pyramids", 120),
     ("domino_lines:40", 300),
-    ("rings:100", 240),
+    ("rings:100", 300),
     ("break", 600),
     ("large_pyramid", 40),
     ("chain", 300),
