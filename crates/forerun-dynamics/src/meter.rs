@@ -27,10 +27,7 @@ pub fn deepest_overlap_m(world: &World) -> f32 {
         .collect();
     let swept: Vec<Bound> = members
         .iter()
-        .map(|m| Bound {
-            aabb: bounds::swept_bound(m.body, &m.state, &still),
-            dynamic: m.body.is_dynamic(),
-        })
+        .map(|m| Bound { aabb: bounds::swept_bound(m.body, &m.state, &still), dynamic: m.body.is_dynamic() })
         .collect();
     let contacts = find_contacts(&members, &overlapping_pairs(&swept), &still);
     contacts
