@@ -69,17 +69,18 @@ fn locked_version(package: &str) -> &'static str {
     version.split_once('+').map_or(version, |(_, wrapped)| wrapped.trim_start_matches("Jolt-"))
 }
 
-/// The stage as the engine takes it: moving meshes cut into parts unless it takes them. Fails with what it cannot do.
+/// The stage as the engine takes it: moving meshes cut into hulls unless it takes them. Returns the most hulls of a mesh, 0 when
+/// none was cut; fails with what the engine cannot do.
 #[cfg(feature = "engines")]
-pub(crate) fn prepare(kind: Kind, stage: &mut Stage) -> Result<(), String> {
+pub(crate) fn prepare(kind: Kind, stage: &mut Stage) -> Result<usize, String> {
     if kind == Kind::Forerun {
-        return Ok(());
+        return Ok(0);
     }
     let pushed = |actor: &crate::stage::Actor| actor.def.force.length() + actor.def.torque.length() > 0.0;
     if stage.actors.iter().any(pushed) {
         return Err("constant forces and torques are not passed on".to_owned());
     }
-    if kind == Kind::RapierTriangles { Ok(()) } else { crate::parts::cut_moving_meshes(stage) }
+    if kind == Kind::RapierTriangles { Ok(0) } else { crate::parts::cut_moving_meshes(stage) }
 }
 
 /// Builds the world of an engine. Fails with what the engine cannot do.
@@ -95,8 +96,8 @@ pub(crate) fn build(kind: Kind, stage: &Stage, threads: u16) -> Result<Box<dyn E
 
 /// Our own engine takes every stage as it is; the others are not in this program.
 #[cfg(not(feature = "engines"))]
-pub(crate) fn prepare(kind: Kind, _: &mut Stage) -> Result<(), String> {
-    if kind == Kind::Forerun { Ok(()) } else { Err(WITHOUT_ENGINES.to_owned()) }
+pub(crate) fn prepare(kind: Kind, _: &mut Stage) -> Result<usize, String> {
+    if kind == Kind::Forerun { Ok(0) } else { Err(WITHOUT_ENGINES.to_owned()) }
 }
 
 /// Builds the world of our own engine.

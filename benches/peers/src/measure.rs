@@ -65,7 +65,7 @@ pub(crate) fn quality(task: &Task) -> Answer {
         let scene = open(&task.scene)?;
         let mut meter = Meter::new(&scene)?;
         let mut stage = Stage::of(&scene)?;
-        engine::prepare(task.kind, &mut stage)?;
+        let hulls = engine::prepare(task.kind, &mut stage)?;
         let mut world = engine::build(task.kind, &stage, task.threads)?;
         for frame in 0..task.frames {
             world.step()?;
@@ -73,7 +73,7 @@ pub(crate) fn quality(task: &Task) -> Answer {
                 meter.look_at(&world.motions());
             }
         }
-        Ok(meter.finish())
+        Ok(meter.finish(hulls))
     };
     on_its_threads(task, run).map_or_else(Answer::Cannot, Answer::Quality)
 }
