@@ -2,9 +2,10 @@
 //! steps empties the caches of the second.
 
 use std::fs;
+use std::num::NonZeroU16;
 
 use cpu_time::ProcessTime;
-use forerun::{Clock, Scene};
+use forerun::{Clock, Scene, Threads};
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{self, Kind};
@@ -42,9 +43,10 @@ pub(crate) struct Times {
 /// Steps and takes the time of each step.
 pub(crate) fn times(task: &Task) -> Answer {
     let run = || {
-        let stage = Stage::of(&open(&task.scene)?)?;
+        let mut stage = Stage::of(&open(&task.scene)?)?;
+        engine::prepare(task.kind, &mut stage)?;
         restart_peak();
-        let mut world = engine::build(task.kind, stage, task.threads)?;
+        let mut world = engine::build(task.kind, &stage, task.threads)?;
         let stopwatch = if task.threads == 1 { Stopwatch::Cpu } else { Stopwatch::Wall(Clock::system()) };
         let mut steps_ms = Vec::with_capacity(task.frames as usize);
         for _ in 0..task.frames {
@@ -54,7 +56,7 @@ pub(crate) fn times(task: &Task) -> Answer {
         }
         Ok(Times { steps_ms, peak_bytes: peak_bytes() })
     };
-    run().map_or_else(Answer::Cannot, Answer::Times)
+    on_its_threads(task, run).map_or_else(Answer::Cannot, Answer::Times)
 }
 
 /// Steps and looks at the poses.
@@ -62,16 +64,24 @@ pub(crate) fn quality(task: &Task) -> Answer {
     let run = || {
         let scene = open(&task.scene)?;
         let mut meter = Meter::new(&scene)?;
-        let mut world = engine::build(task.kind, Stage::of(&scene)?, task.threads)?;
+        let mut stage = Stage::of(&scene)?;
+        let hulls = engine::prepare(task.kind, &mut stage)?;
+        let mut world = engine::build(task.kind, &stage, task.threads)?;
         for frame in 0..task.frames {
             world.step()?;
             if Meter::is_due(frame, task.frames) {
                 meter.look_at(&world.motions());
             }
         }
-        Ok(meter.finish())
+        Ok(meter.finish(hulls))
     };
-    run().map_or_else(Answer::Cannot, Answer::Quality)
+    on_its_threads(task, run).map_or_else(Answer::Cannot, Answer::Quality)
+}
+
+/// Runs all of a task within one pool, so that no step pays for being handed over. Box3D and Jolt have threads of their own; to them it is just a thread.
+fn on_its_threads<T: Send>(task: &Task, run: impl FnOnce() -> Result<T, String> + Send) -> Result<T, String> {
+    let count = NonZeroU16::new(task.threads).unwrap_or(NonZeroU16::MIN);
+    Threads::exactly(count).map_err(|error| error.to_string())?.install(run)
 }
 
 fn open(scene: &str) -> Result<Scene, String> {

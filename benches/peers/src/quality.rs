@@ -26,6 +26,8 @@ pub(crate) struct Quality {
     pub(crate) own: Own,
     /// Bodies whose motion was not finite at the end.
     pub(crate) not_finite: usize,
+    /// The most hulls that a mesh of the scene was cut into for this engine; 0: none was cut.
+    pub(crate) hulls_per_mesh: usize,
 }
 
 /// A scene's own guard.
@@ -85,7 +87,7 @@ impl Meter {
         self.overlap_max_m = self.overlap_max_m.max(meter::deepest_overlap_m(&self.now));
     }
 
-    pub(crate) fn finish(self) -> Quality {
+    pub(crate) fn finish(self, hulls_per_mesh: usize) -> Quality {
         let positive = self.energy_start_j > 0.0;
         Quality {
             overlap_max_m: self.overlap_max_m,
@@ -94,6 +96,7 @@ impl Meter {
             speed_end: meter::mean_speed(&self.now),
             own: own(&self.scene_name, &self.start, &self.now),
             not_finite: self.not_finite,
+            hulls_per_mesh,
         }
     }
 }
@@ -183,7 +186,7 @@ mod tests {
             ))
         });
         meter.look_at(&standing);
-        let quality = meter.finish();
+        let quality = meter.finish(0);
         assert!((quality.overlap_end_m - 0.01).abs() < 1e-5, "{}", quality.overlap_end_m);
         let Own::Stands { low_m, sideways_m } = quality.own else { panic!("{:?}", quality.own) };
         assert!((low_m - 0.03).abs() < 1e-5 && (sideways_m - 0.02).abs() < 1e-5, "{low_m} {sideways_m}");
@@ -206,7 +209,7 @@ mod tests {
         let broken =
             motions(&meter.start, |i, place| Pose::from_position(if i == 1 { Vec3::NAN } else { place }));
         meter.look_at(&broken);
-        let quality = meter.finish();
+        let quality = meter.finish(0);
         assert_eq!(quality.not_finite, 1);
         assert!(quality.overlap_end_m.is_finite());
     }

@@ -21,10 +21,13 @@ pub(crate) struct Rapier {
 
 impl Rapier {
     pub(crate) fn new(stage: &Stage, threads: u16) -> Result<Self, String> {
+        // With its feature `parallel` it uses the threads of the pool that it is called in, and else none.
+        if threads > 1 && cfg!(not(feature = "rapier-threads")) {
+            return Err("built without the feature \"rapier-threads\"".to_owned());
+        }
         let mut world = PhysicsWorld::new();
         world.gravity = vector(stage.environment.gravity);
         world.integration_parameters.dt = stage.environment.settings.frame_seconds;
-        use_threads(&mut world, threads)?;
         let mut bodies = Vec::with_capacity(stage.actors.len());
         for actor in &stage.actors {
             let material = actor.def.material;
@@ -39,17 +42,6 @@ impl Rapier {
         }
         Ok(Rapier { world, bodies })
     }
-}
-
-#[cfg(feature = "rapier-threads")]
-fn use_threads(world: &mut PhysicsWorld, threads: u16) -> Result<(), String> {
-    let pool = world.physics_pipeline.configure_thread_pool(usize::from(threads));
-    pool.map_err(|error| error.to_string())
-}
-
-#[cfg(not(feature = "rapier-threads"))]
-fn use_threads(_: &mut PhysicsWorld, threads: u16) -> Result<(), String> {
-    if threads == 1 { Ok(()) } else { Err("built without the feature \"rapier-threads\"".to_owned()) }
 }
 
 fn body(actor: &Actor) -> RigidBody {

@@ -235,6 +235,7 @@ mod tests {
             speed_end: 0.0,
             own: Own::Lost { count: 0 },
             not_finite: 0,
+            hulls_per_mesh: 0,
         };
         let times = |steps_ms: &[f64], peak| Times { steps_ms: steps_ms.to_vec(), peak_bytes: Some(peak) };
         let rounds = [times(&[9.0, 1.0, 4.0, 3.0], 70), times(&[8.0, 2.0, 2.0, 5.0], 60)];

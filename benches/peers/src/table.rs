@@ -19,9 +19,19 @@ pub(crate) fn markdown(rows: &[Row]) -> String {
         };
         let scene = format!("{} ({} bodies, {} frames)", row.scene, row.bodies, row.frames);
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "| {scene} | {} | {} | {cells} |", row.threads, row.engine);
+        let _ = writeln!(text, "| {scene} | {} | {}{} | {cells} |", row.threads, row.engine, hulls(row));
     }
     text
+}
+
+/// How finely moving meshes were cut for the engine: it decides much of its time.
+fn hulls(row: &Row) -> String {
+    match &row.outcome {
+        Outcome::Measured(m) if m.quality.hulls_per_mesh > 0 => {
+            format!(", {} hulls a mesh", m.quality.hulls_per_mesh)
+        }
+        _ => String::new(),
+    }
 }
 
 fn measured_cells(row: &Row, m: &Measured, rows: &[Row]) -> String {
