@@ -1,7 +1,7 @@
 //! Bench: the step on scenes, with guards on the quality that its time was paid for.
 
 mod measure;
-mod memory;
+pub(crate) mod memory;
 mod storage;
 
 pub(crate) use measure::{Measurement, Run, measure};

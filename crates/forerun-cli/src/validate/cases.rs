@@ -16,6 +16,7 @@ mod timeline_bits;
 mod timeline_containment;
 mod timeline_cost;
 mod timeline_cutoff;
+mod timeline_memory;
 mod timeline_scrub;
 
 /// All cases, in the order in which they are run.
@@ -33,6 +34,7 @@ pub(crate) const CASES: &[Case] = &[
     short("timeline_cutoff", timeline_cutoff::run),
     short("timeline_containment", timeline_containment::run),
     long("timeline_cost", timeline_cost::run),
+    long("timeline_memory", timeline_memory::run),
     long("timeline_scrub", timeline_scrub::run),
     long("timeline_bits", timeline_bits::run),
 ];
