@@ -135,7 +135,7 @@ fn recount_rest(states: &mut [BodyState], full_before: u32, full: u32) {
     }
     for state in states {
         state.rest = if state.rest >= full_before {
-            full + u32::from(state.rest > full_before)
+            full.saturating_add(u32::from(state.rest > full_before))
         } else {
             // Rounded to nearest, so that lengths which vary to and fro take nothing away.
             let scaled = u64::from(state.rest) * u64::from(full) + u64::from(full_before / 2);

@@ -22,6 +22,9 @@ use super::reach::Reach;
 use super::refusal::Refusal;
 use crate::{Recorder, Threads};
 
+/// Frames whose notes are kept, at most: their memory is taken at the start, while of states bytes may bound what is kept.
+const NOTES_MAX: usize = 65_536;
+
 /// Done after every computed frame.
 pub type Hinder = Box<dyn FnMut() + Send>;
 
@@ -55,13 +58,14 @@ impl Shared {
     pub(super) fn new(timeline: &Timeline) -> Self {
         let settings = timeline.settings();
         // The newest note is at most the lookahead after the displayed frame; what is kept of the past may be shown too.
-        let notes_kept = settings.lookahead as usize + settings.past as usize + 2;
+        let notes_kept =
+            (settings.lookahead as usize).saturating_add(settings.past as usize).saturating_add(2);
         Shared {
             published: ArcSwap::from_pointee(Published {
                 snapshot: timeline.snapshot(),
                 stats: timeline.stats(),
             }),
-            notes: FrameNotes::with_capacity(notes_kept),
+            notes: FrameNotes::with_capacity(notes_kept.min(NOTES_MAX)),
             panic: Mutex::new(None),
             dropped_to: AtomicU64::new(u64::MAX),
             display: AtomicU64::new(timeline.display().0),

@@ -31,7 +31,7 @@ impl Reach {
 
     /// A picture was shown.
     pub(super) fn grow(&mut self) {
-        self.frames = (self.frames + self.frames / 2 + 1).min(self.full);
+        self.frames = self.frames.saturating_add(self.frames / 2 + 1).min(self.full);
     }
 }
 
@@ -65,5 +65,17 @@ mod tests {
         assert_eq!(reach.frames(), 3);
         reach.grow();
         assert_eq!(reach.frames(), 3);
+    }
+
+    #[test]
+    fn the_longest_lookahead_is_grown_back_to() {
+        let mut reach = Reach::new(u32::MAX);
+        reach.grow();
+        assert_eq!(reach.frames(), u32::MAX);
+        reach.shorten();
+        for _ in 0..5 {
+            reach.grow();
+        }
+        assert_eq!(reach.frames(), u32::MAX);
     }
 }

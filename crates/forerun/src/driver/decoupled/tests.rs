@@ -68,6 +68,23 @@ fn the_display_never_waits_while_physics_sleeps_half_a_second_a_frame() {
 }
 
 #[test]
+fn the_longest_past_and_lookahead_are_bounded_by_bytes_alone() {
+    let bounds = TimelineSettings {
+        past: u32::MAX,
+        lookahead: u32::MAX,
+        bytes_max: Some(1 << 20),
+        ..TimelineSettings::default()
+    };
+    let timeline = Timeline::new(&[BodyDef::fixed(Shape::HalfSpace)], Environment::default(), bounds);
+    let mut driver = Decoupled::start(timeline.expect("a plain body"), settings()).expect("a thread");
+    assert_eq!(driver.show(0.0).expect("physics lives").frame, Frame(0));
+    assert!(eventually(|| driver.last_picture().snapshot.horizon() > Frame(100)));
+    driver.show(FRAME_S).expect("physics lives");
+    assert!(eventually(|| driver.last_picture().stats.lookahead_frames > 0));
+    driver.show(2.0 * FRAME_S).expect("physics lives");
+}
+
+#[test]
 fn display_time_never_goes_back() {
     let mut driver = filled();
     let times: Vec<f64> =
