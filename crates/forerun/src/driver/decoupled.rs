@@ -282,4 +282,4 @@ mod order_tests;
 mod orders;
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "times are kept to the bit where nothing is late")]
-mod tests;
+pub(super) mod tests;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use forerun_timeline::{Change, Command, CommandError, CommandKey, Order, Timeline};
+use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Order, Timeline};
 
 use super::fork::{Fork, Names};
 use super::refusal::{AdoptError, Refusal};
@@ -105,9 +105,14 @@ impl Heard {
         }
     }
 
-    /// A fork takes the timeline's place, and what was ordered since it was made is ordered again.
-    pub(super) fn adopt(&mut self, timeline: &mut Timeline, fork: Fork) -> Result<Vec<Refusal>, AdoptError> {
-        let displayed = timeline.display();
+    /// A fork takes the timeline's place, and what was ordered since it was made is ordered again. `displayed` is shown now; the timeline may
+    /// not have learned it yet.
+    pub(super) fn adopt(
+        &mut self,
+        timeline: &mut Timeline,
+        fork: Fork,
+        displayed: Frame,
+    ) -> Result<Vec<Refusal>, AdoptError> {
         let (oldest, horizon) = (fork.timeline.oldest(), fork.timeline.horizon());
         if oldest > displayed || horizon <= displayed {
             return Err(AdoptError::NotDisplayed { displayed, oldest, horizon });

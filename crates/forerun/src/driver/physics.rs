@@ -78,8 +78,8 @@ impl Shared {
 
     /// Tells the physics that a picture of this frame is shown.
     pub(super) fn tell_display(&self, frame: Frame) {
-        // Unparking orders these stores before what the woken thread reads; a busy one reads them a frame later, which is soon enough.
-        self.display.store(frame.0, Ordering::Relaxed);
+        // Who learns this frame also finds what was ordered before it was shown: see `Physics::catch_up`.
+        self.display.store(frame.0, Ordering::Release);
         self.pictures.fetch_add(1, Ordering::Relaxed);
         // Physics that is not even given a processor has not done its work.
         self.done.store(false, Ordering::Relaxed);
@@ -157,8 +157,7 @@ pub(super) fn spawn(mut physics: Physics, threads: Threads) -> io::Result<JoinHa
 impl Physics {
     fn run(&mut self) {
         while !self.shared.stopping.load(Ordering::Relaxed) {
-            self.hear();
-            self.learn_display();
+            self.catch_up();
             match self.advance() {
                 Progress::Advanced(advance) => {
                     let slices_max = u8::try_from(advance.slices_max).unwrap_or(u8::MAX);
@@ -180,9 +179,19 @@ impl Physics {
         }
     }
 
+    /// Hears what waits and learns what is shown.
+    ///
+    /// What is shown is read first and learned last. So all that was ordered before it was shown is heard while the frames are still kept that it
+    /// was ordered for, and what is heard is judged by what the user sees now.
+    fn catch_up(&mut self) {
+        let shown = Frame(self.shared.display.load(Ordering::Acquire));
+        self.hear(shown);
+        self.learn_display(shown);
+    }
+
     /// Learns what is shown, and how far ahead of it to go.
-    fn learn_display(&mut self) {
-        self.timeline.set_display(Frame(self.shared.display.load(Ordering::Relaxed)));
+    fn learn_display(&mut self, shown: Frame) {
+        self.timeline.set_display(shown);
         let pictures = self.shared.pictures.load(Ordering::Relaxed);
         if pictures != self.pictures {
             self.pictures = pictures;
@@ -199,8 +208,8 @@ impl Physics {
         if self.timeline.valid_to() >= reached { Progress::Idle } else { self.timeline.advance() }
     }
 
-    /// Takes the messages that wait.
-    fn hear(&mut self) {
+    /// Takes the messages that wait, while this frame is shown.
+    fn hear(&mut self, shown: Frame) {
         let messages: Vec<Message> = self.messages.try_iter().take(self.command_capacity).collect();
         let (mut changed, mut adopted) = (false, false);
         for message in messages {
@@ -214,7 +223,7 @@ impl Physics {
                 Message::Fork => drop(self.forks.try_send(self.heard.fork(&self.timeline))),
                 Message::Adopt(fork) => {
                     changed = true;
-                    match self.heard.adopt(&mut self.timeline, *fork) {
+                    match self.heard.adopt(&mut self.timeline, *fork, shown) {
                         Ok(refused) => {
                             adopted = true;
                             self.refuse(refused);
@@ -260,3 +269,6 @@ fn message_of(panic: &(dyn Any + Send)) -> String {
         _ => "with a value that is no text".to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,11 +7,11 @@ use forerun_timeline::{Change, CommandError};
 use super::*;
 use crate::{BodyDef, Clock, Cuboid, Environment, Pose, Shape, Sphere, TimelineSettings, Vec3};
 
-pub(super) const LOOKAHEAD: u32 = 20;
+pub(in crate::driver) const LOOKAHEAD: u32 = 20;
 pub(super) const FRAME_S: f64 = (1.0_f32 / 60.0) as f64;
 
 /// A ball above the ground and another far away.
-pub(super) fn timeline() -> Timeline {
+pub(in crate::driver) fn timeline() -> Timeline {
     let ball = Shape::Sphere(Sphere { radius: 0.5 });
     let bodies = [
         BodyDef::fixed(Shape::Cuboid(Cuboid { half_extents: Vec3::new(50.0, 1.0, 50.0) })).at(Vec3::NEG_Y),
