@@ -175,6 +175,12 @@ impl Timeline {
         Ok(timeline)
     }
 
+    /// Forgets how to undo orders on commands up to a frame, as when that frame were the oldest: for who repeats the orders of a session that
+    /// had forgotten more than this timeline.
+    pub fn forget_undo_to(&mut self, oldest: Frame) {
+        self.undo.forget_to(oldest);
+    }
+
     /// The bodies at the oldest frame.
     fn put_bodies(&mut self, parts: &TimelineParts) -> Result<(), PartsError> {
         let mut made = Vec::with_capacity(parts.names.len());

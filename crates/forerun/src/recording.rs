@@ -95,7 +95,11 @@ impl Recording {
                     let obeyed = obey(&mut timeline, order);
                     obeyed.map_err(|error| RecordingError::impossible(format!("an order: {error}")))?;
                 }
-                Event::Mark(mark) => timeline.set_display(mark.display),
+                Event::Mark(mark) => {
+                    timeline.set_display(mark.display);
+                    // Their frames are still kept here, as nothing was computed; the session could not undo them any more.
+                    timeline.forget_undo_to(mark.oldest);
+                }
                 Event::Restart(parts) => {
                     let made = Timeline::from_parts(TimelineParts::clone(parts));
                     timeline = made.map_err(RecordingError::impossible)?;

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
 
 use arc_swap::ArcSwap;
-use forerun_timeline::{Frame, Progress, Snapshot, Stats, Timeline};
+use forerun_timeline::{Frame, Order, Progress, Snapshot, Stats, Timeline};
 
 use super::fork::Fork;
 use super::frame_notes::{FrameNote, FrameNotes};
@@ -211,32 +211,14 @@ impl Physics {
     /// Takes the messages that wait, while this frame is shown.
     fn hear(&mut self, shown: Frame) {
         let messages: Vec<Message> = self.messages.try_iter().take(self.command_capacity).collect();
-        let (mut changed, mut adopted) = (false, false);
+        let mut changed = false;
         for message in messages {
             match message {
-                Message::Obey(order) => {
-                    changed = true;
-                    let refused = self.heard.obey(&mut self.timeline, order).err();
-                    self.refuse(refused);
-                }
+                Message::Obey(order) => changed |= self.obey(order),
                 // When nobody takes the forks that there are, nobody wants this one either.
                 Message::Fork => drop(self.forks.try_send(self.heard.fork(&self.timeline))),
-                Message::Adopt(fork) => {
-                    changed = true;
-                    match self.heard.adopt(&mut self.timeline, *fork, shown) {
-                        Ok(refused) => {
-                            adopted = true;
-                            self.refuse(refused);
-                        }
-                        Err(error) => self.refuse([Refusal::Adopt(error)]),
-                    }
-                }
+                Message::Adopt(fork) => changed |= self.adopt(*fork, shown),
             }
-        }
-        match &self.recorder {
-            Some(recorder) if adopted => recorder.restart(&self.timeline),
-            Some(recorder) if changed => recorder.follow(&self.timeline),
-            _ => {}
         }
         if changed {
             // What is thrown away then was computed in time that nobody else wanted.
@@ -246,6 +228,34 @@ impl Physics {
             self.shared.dropped_to.fetch_min(self.timeline.valid_to().0, Ordering::Relaxed);
             self.publish();
         }
+    }
+
+    /// Obeys and records an order; whether it was possible.
+    fn obey(&mut self, order: Order) -> bool {
+        let recorded = self.recorder.is_some().then(|| order.clone());
+        if let Err(refusal) = self.heard.obey(&mut self.timeline, order) {
+            self.refuse([refusal]);
+            return false;
+        }
+        if let Some((recorder, order)) = self.recorder.as_ref().zip(recorded) {
+            recorder.order(&order, &self.timeline);
+        }
+        true
+    }
+
+    /// Adopts a fork, and records the timeline that it is from now on; whether it was possible.
+    fn adopt(&mut self, fork: Fork, shown: Frame) -> bool {
+        match self.heard.adopt(&mut self.timeline, fork, shown) {
+            Ok(refused) => self.refuse(refused),
+            Err(error) => {
+                self.refuse([Refusal::Adopt(error)]);
+                return false;
+            }
+        }
+        if let Some(recorder) = &self.recorder {
+            recorder.restart(&self.timeline);
+        }
+        true
     }
 
     fn refuse(&self, refusals: impl IntoIterator<Item = Refusal>) {

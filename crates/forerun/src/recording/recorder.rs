@@ -1,16 +1,16 @@
 //! Recorder: writes down a session while it goes on.
 //!
-//! Promise: what was recorded is in the file, whatever happens to the program after. A disk that is full ends the recording, not the session.
+//! Promise: what was recorded was handed to the operating system, so it is in the file even when the program crashes right after; when the machine
+//! does, only what the system had written by then. [`Recorder::finish`] waits for the disk. A disk that is full ends the recording, not
+//! the session.
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use forerun_geometry::Shape;
 use forerun_timeline::parts::Keep;
-use forerun_timeline::{Change, Command, CommandKey, Frame, Order, Timeline};
+use forerun_timeline::{Frame, Order, Timeline};
 
 use super::Mark;
 use super::encode::Encoder;
@@ -20,7 +20,7 @@ use super::file::replace_file;
 /// A hash so often. Seconds of display time.
 const MARK_EVERY_S: f64 = 1.0;
 
-/// Writes down a session: what changes among the commands, and now and then a hash. Each record goes to the file at once, in one piece.
+/// Writes down a session: the orders that were obeyed, and now and then a hash. Each record goes to the file at once, in one piece.
 ///
 /// A clone writes to the same file, so that who hands one to a [driver](crate::DecoupledSettings) can [finish](Recorder::finish) it after. What cannot
 /// be written is told then, and does not disturb the session.
@@ -34,8 +34,9 @@ struct Writing {
     /// `None` once the file is complete, or where something could not be written.
     encoder: Option<Encoder>,
     failure: Option<RecordingError>,
-    /// The commands that the file knows, but for those that no timeline keeps any more.
-    known: BTreeMap<CommandKey, Change>,
+    /// The oldest frame kept, as far as the file tells.
+    oldest: Frame,
+    /// The displayed frame at the last mark.
     marked: Option<Frame>,
 }
 
@@ -50,22 +51,25 @@ impl Recorder {
         let begun = Encoder::begin(&timeline.parts(Keep::Commands), &mut bytes);
         let encoder = Some(begun.map_err(|error| error.in_file(&path))?);
         let file = replace_file(&path, &bytes).map_err(|error| RecordingError::io(&path, &error))?;
-        let known = known(timeline);
-        let writing = Writing { path, file, encoder, failure: None, known, marked: None };
+        let oldest = timeline.oldest();
+        let writing = Writing { path, file, encoder, failure: None, oldest, marked: None };
         Ok(Recorder(Arc::new(Mutex::new(writing))))
     }
 
-    /// Records what has changed among the commands since the last time: to be called after every batch of orders, and before the
-    /// display goes on, as what is forgotten by then cannot be recorded.
-    pub fn follow(&self, timeline: &Timeline) {
-        self.writing().follow(timeline);
+    /// Records an order: to be called with every order that `timeline` obeyed, right after it did. One that was refused is not recorded.
+    pub fn order(&self, order: &Order, timeline: &Timeline) {
+        let mut writing = self.writing();
+        // What is undone next depends on what has been forgotten, so a reader has to know. The order only acts after what the mark hashes.
+        if matches!(order, Order::Undo | Order::Redo) && writing.oldest != timeline.oldest() {
+            writing.mark(timeline);
+        }
+        writing.record(|encoder, bytes| encoder.order(order, bytes));
     }
 
     /// Records that a fork was adopted: the timeline as it is now, in full, as its past may be another one too.
     pub fn restart(&self, timeline: &Timeline) {
         let parts = timeline.parts(Keep::Commands);
         let mut writing = self.writing();
-        writing.known = known(timeline);
         writing.record(|encoder, bytes| encoder.start(&parts, bytes));
         // What follows it says that it is complete.
         writing.mark(timeline);
@@ -111,39 +115,9 @@ impl Recorder {
 }
 
 impl Writing {
-    fn follow(&mut self, timeline: &Timeline) {
-        let oldest = timeline.oldest();
-        self.known.retain(|key, _| key.frame > oldest);
-        let mut gone = self.known.clone();
-        let mut orders = Vec::new();
-        for (key, change) in timeline.commands() {
-            let command = || Command { key: *key, change: change.clone() };
-            match gone.remove(key) {
-                Some(known) if is_same(&known, change) => {}
-                Some(_) => orders.push(Order::Replace(command())),
-                None => orders.push(Order::Submit(command())),
-            }
-        }
-        // First what is gone: a body may be added by the name of one that is not after all.
-        for key in gone.into_keys() {
-            self.known.remove(&key);
-            self.order(&Order::Retract(key));
-        }
-        for order in orders {
-            self.order(&order);
-            if let Order::Submit(Command { key, change }) | Order::Replace(Command { key, change }) = order {
-                self.known.insert(key, change);
-            }
-        }
-    }
-
-    fn order(&mut self, order: &Order) {
-        self.record(|encoder, bytes| encoder.order(order, bytes));
-    }
-
     fn mark(&mut self, timeline: &Timeline) {
         let mark = Mark::of(timeline);
-        self.marked = Some(mark.display);
+        (self.oldest, self.marked) = (mark.oldest, Some(mark.display));
         self.record(|encoder, bytes| encoder.mark(&mark, bytes));
     }
 
@@ -163,23 +137,4 @@ impl Writing {
             (self.encoder, self.failure) = (None, Some(error));
         }
     }
-}
-
-fn known(timeline: &Timeline) -> BTreeMap<CommandKey, Change> {
-    timeline.commands().map(|(key, change)| (*key, change.clone())).collect()
-}
-
-/// Whether a command says the same as before. Large shapes are compared by where they are: comparing meshes would take long.
-fn is_same(a: &Change, b: &Change) -> bool {
-    let (Change::Add { body, def }, Change::Add { body: other_body, def: other }) = (a, b) else {
-        return a == b;
-    };
-    let same_shape = match (&def.shape, &other.shape) {
-        (Shape::Mesh(a), Shape::Mesh(b)) => Arc::ptr_eq(a, b),
-        (Shape::Hull(a), Shape::Hull(b)) => Arc::ptr_eq(a, b),
-        (Shape::Compound(a), Shape::Compound(b)) => Arc::ptr_eq(a, b),
-        (a, b) => a == b,
-    };
-    let without = |def: &crate::BodyDef| crate::BodyDef { shape: Shape::HalfSpace, ..def.clone() };
-    same_shape && body == other_body && without(def) == without(other)
 }

@@ -6,7 +6,8 @@ use super::super::decoupled::tests::{LOOKAHEAD, timeline};
 use super::super::fork::Names;
 use super::super::refusal::AdoptError;
 use super::*;
-use crate::{BodyId, TimelineSettings, Vec3};
+use crate::recording::Event;
+use crate::{BodyDef, BodyId, Recording, Shape, TimelineSettings, Vec3};
 
 /// A physics that is told things by hand, and both ends of its queues.
 struct Bench {
@@ -53,6 +54,30 @@ impl Bench {
     }
 }
 
+/// A recorder of what the physics is told from now on, and its file.
+fn recorded(bench: &mut Bench, name: &str) -> (Recorder, std::path::PathBuf) {
+    let path = std::env::temp_dir().join(format!("forerun-physics-{}-{name}.forerun", std::process::id()));
+    let recorder = Recorder::create(&path, &bench.physics.timeline).expect("a place to write");
+    bench.physics.recorder = Some(recorder.clone());
+    (recorder, path)
+}
+
+/// What was recorded; the file is gone after.
+fn read((recorder, path): (Recorder, std::path::PathBuf)) -> Recording {
+    recorder.finish().expect("a place to write");
+    let recording = Recording::read(&path).expect("it is whole");
+    std::fs::remove_file(&path).expect("it was there");
+    recording
+}
+
+fn orders_of(recording: &Recording) -> Vec<Order> {
+    let order = |event: &Event| match event {
+        Event::Order(order) => Some(order.clone()),
+        Event::Mark(_) | Event::Restart(_) => None,
+    };
+    recording.events.iter().filter_map(order).collect()
+}
+
 fn push(frame: u64, sequence: u64) -> Order {
     let velocity = Vec3::X;
     let change = Change::SetVelocity { body: BodyId(1), velocity, angular_velocity: Vec3::ZERO };
@@ -97,4 +122,59 @@ fn without_a_past_an_order_still_comes_before_the_frame_that_was_shown_after_it(
         bench.physics.catch_up();
         assert_eq!(bench.physics.timeline.oldest(), Frame(displayed + 2));
     }
+}
+
+#[test]
+fn what_was_obeyed_is_recorded_as_it_was_said_and_what_was_refused_is_not() {
+    let mut bench = bench(timeline());
+    let file = recorded(&mut bench, "as-said");
+    let said = [push(3, 0), Order::Undo, Order::Redo, push(4, 1), Order::Undo];
+    for order in &said {
+        bench.tell(Message::Obey(order.clone()));
+    }
+    // Of the same key as one that stands.
+    bench.tell(Message::Obey(push(3, 0)));
+    bench.physics.catch_up();
+    assert_eq!(bench.refused().len(), 1);
+    let recording = read(file);
+    assert_eq!(orders_of(&recording), said);
+    let (is, was) = (recording.timeline().expect("it was one"), &bench.physics.timeline);
+    assert_eq!(is.parts(crate::Keep::Commands), was.parts(crate::Keep::Commands));
+}
+
+#[test]
+fn a_name_that_goes_from_one_command_to_another_in_one_batch_is_replayed() {
+    let mut bench = bench(timeline());
+    let file = recorded(&mut bench, "handed-on");
+    let key = |frame| CommandKey { frame: Frame(frame), source: 1, sequence: 0 };
+    let add = |radius| {
+        let def = BodyDef::new(Shape::sphere(radius).expect("a ball")).at(Vec3::Y * 20.0);
+        Change::Add { body: BodyId(3), def: Box::new(def) }
+    };
+    bench.tell(Message::Obey(Order::Submit(Command { key: key(5), change: add(0.5) })));
+    bench.physics.catch_up();
+    let release = Change::Release { body: BodyId(1) };
+    bench.tell(Message::Obey(Order::Replace(Command { key: key(5), change: release })));
+    bench.tell(Message::Obey(Order::Submit(Command { key: key(4), change: add(0.25) })));
+    bench.physics.catch_up();
+    assert_eq!(bench.refused(), []);
+    let replay = read(file).replay(&mut |_| {}).expect("it was recorded");
+    assert_eq!((replay.orders, replay.refused), (3, 0));
+}
+
+#[test]
+fn what_is_refused_neither_shortens_the_reach_nor_publishes() {
+    let mut bench = bench(timeline());
+    let reach = bench.physics.reach;
+    let published = bench.physics.shared.published.load_full();
+    bench.tell(Message::Obey(Order::Undo));
+    bench.physics.catch_up();
+    assert_eq!(bench.refused().len(), 1);
+    assert_eq!(bench.physics.reach, reach);
+    assert!(Arc::ptr_eq(&published, &bench.physics.shared.published.load_full()));
+    assert_eq!(bench.physics.shared.take_drop(), None);
+    bench.tell(Message::Obey(push(3, 0)));
+    bench.physics.catch_up();
+    assert!(bench.physics.reach != reach);
+    assert_eq!(bench.physics.shared.take_drop(), Some(Frame(0)));
 }
