@@ -34,8 +34,40 @@ impl Names {
         BodyId(self.body.fetch_add(1, Ordering::Relaxed))
     }
 
+    /// Lets a timeline know the names up to that of a body which an order adds. Bodies are named from here for all forks, added to a few of them,
+    /// and refused where their names are too far ahead.
+    pub(super) fn reserve_for(&self, timeline: &mut Timeline, order: &Order) {
+        let Some(body) = added_by(order) else { return };
+        if body.0 < self.body.load(Ordering::Relaxed) {
+            while timeline.names() < body.0 as usize {
+                timeline.reserve_body();
+            }
+        }
+    }
+
+    /// Gives nobody the name of a body which an order added: who sent it did not get the name from here.
+    pub(super) fn learn_body(&self, body: BodyId) {
+        self.body.fetch_max(body.0.saturating_add(1), Ordering::Relaxed);
+    }
+
+    /// Gives no local command the sequence number that an order has.
+    pub(super) fn learn_sequence(&self, order: &Order) {
+        if let Order::Submit(Command { key: CommandKey { source: 0, sequence, .. }, .. }) = order {
+            self.sequence.fetch_max(sequence.saturating_add(1), Ordering::Relaxed);
+        }
+    }
+
     pub(super) fn key_at(&self, frame: Frame) -> CommandKey {
         CommandKey { frame, source: 0, sequence: self.sequence.fetch_add(1, Ordering::Relaxed) }
+    }
+}
+
+/// The body that an order adds.
+pub(super) fn added_by(order: &Order) -> Option<BodyId> {
+    match order {
+        Order::Submit(Command { change: Change::Add { body, .. }, .. })
+        | Order::Replace(Command { change: Change::Add { body, .. }, .. }) => Some(*body),
+        _ => None,
     }
 }
 
@@ -69,7 +101,9 @@ impl Fork {
     /// When the timeline cannot obey it; then nothing changed.
     pub fn change(&mut self, frame: Frame, change: Change) -> Result<CommandKey, CommandError> {
         let key = self.names.key_at(frame);
-        self.timeline.obey(Order::Submit(Command { key, change }))?;
+        let order = Order::Submit(Command { key, change });
+        self.names.reserve_for(&mut self.timeline, &order);
+        self.timeline.obey(order)?;
         Ok(key)
     }
 

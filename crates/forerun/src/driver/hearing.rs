@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use forerun_timeline::{Change, Command, CommandError, CommandKey, Frame, Order, Timeline};
 
-use super::fork::{Fork, Names};
+use super::fork::{Fork, Names, added_by};
 use super::refusal::{AdoptError, Refusal};
 
 /// So many commands are remembered for the forks that are about. Some hours of what a user does.
@@ -49,6 +49,8 @@ impl Heard {
     }
 
     pub(super) fn obey(&mut self, timeline: &mut Timeline, order: Order) -> Result<(), Refusal> {
+        let added = added_by(&order);
+        self.names.reserve_for(timeline, &order);
         let (key, change) = match order {
             Order::Submit(Command { key, change }) => {
                 let kept = self.has_forks().then(|| change.clone());
@@ -69,6 +71,9 @@ impl Heard {
             Order::Undo => self.undone(timeline, Timeline::undo).map_err(Refusal::Undo)?,
             Order::Redo => self.undone(timeline, Timeline::redo).map_err(Refusal::Redo)?,
         };
+        if let Some(body) = added {
+            self.names.learn_body(body);
+        }
         self.orders += 1;
         self.remember(key, change);
         Ok(())
@@ -132,24 +137,30 @@ impl Heard {
         self.orders += 1;
         self.remembered.clear();
         self.complete_from = self.orders;
-        Ok(since.into_iter().filter_map(|(key, change)| ensure(timeline, key, change).err()).collect())
+        Ok(since.into_iter().filter_map(|(key, change)| self.ensure(timeline, key, change).err()).collect())
     }
-}
 
-/// Sees to it that a command stands with this change, or that there is none.
-fn ensure(timeline: &mut Timeline, key: CommandKey, change: Option<Change>) -> Result<(), Refusal> {
-    let standing = change_of(timeline, &key);
-    match change {
-        Some(change) if standing.is_none() => {
-            timeline.obey(Order::Submit(Command { key, change })).map_err(|error| Refusal::Submit(key, error))
-        }
-        Some(change) if standing != Some(&change) => timeline
-            .obey(Order::Replace(Command { key, change }))
-            .map_err(|error| Refusal::Replace(key, error)),
-        None if standing.is_some() => {
-            timeline.obey(Order::Retract(key)).map_err(|error| Refusal::Retract(key, error))
-        }
-        _ => Ok(()),
+    /// Sees to it that a command stands with this change, or that there is none.
+    fn ensure(
+        &self,
+        timeline: &mut Timeline,
+        key: CommandKey,
+        change: Option<Change>,
+    ) -> Result<(), Refusal> {
+        let standing = change_of(timeline, &key);
+        let order = match change {
+            Some(change) if standing.is_none() => Order::Submit(Command { key, change }),
+            Some(change) if standing != Some(&change) => Order::Replace(Command { key, change }),
+            None if standing.is_some() => Order::Retract(key),
+            _ => return Ok(()),
+        };
+        self.names.reserve_for(timeline, &order);
+        let refusal = match order {
+            Order::Submit(_) => Refusal::Submit,
+            Order::Replace(_) => Refusal::Replace,
+            _ => Refusal::Retract,
+        };
+        timeline.obey(order).map_err(|error| refusal(key, error))
     }
 }
 

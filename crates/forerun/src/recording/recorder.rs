@@ -12,10 +12,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use forerun_timeline::parts::Keep;
 use forerun_timeline::{Frame, Order, Timeline};
 
-use super::Mark;
 use super::encode::Encoder;
 use super::error::RecordingError;
 use super::file::replace_file;
+use super::{Mark, RESERVED_MAX};
 
 /// A hash so often. Seconds of display time.
 const MARK_EVERY_S: f64 = 1.0;
@@ -36,6 +36,8 @@ struct Writing {
     failure: Option<RecordingError>,
     /// The oldest frame kept, as far as the file tells.
     oldest: Frame,
+    /// Names of bodies that who reads the file knows.
+    names: usize,
     /// The displayed frame at the last mark.
     marked: Option<Frame>,
 }
@@ -51,14 +53,25 @@ impl Recorder {
         let begun = Encoder::begin(&timeline.parts(Keep::Commands), &mut bytes);
         let encoder = Some(begun.map_err(|error| error.in_file(&path))?);
         let file = replace_file(&path, &bytes).map_err(|error| RecordingError::io(&path, &error))?;
-        let oldest = timeline.oldest();
-        let writing = Writing { path, file, encoder, failure: None, oldest, marked: None };
+        let (oldest, names) = (timeline.oldest(), timeline.names());
+        let writing = Writing { path, file, encoder, failure: None, oldest, names, marked: None };
         Ok(Recorder(Arc::new(Mutex::new(writing))))
     }
 
     /// Records an order: to be called with every order that `timeline` obeyed, right after it did. One that was refused is not recorded.
     pub fn order(&self, order: &Order, timeline: &Timeline) {
         let mut writing = self.writing();
+        if let Order::Submit(command) | Order::Replace(command) = order
+            && let Some(body) = command.change.body()
+        {
+            let name = body.0 as usize;
+            if name > writing.names + RESERVED_MAX {
+                // No reader makes up so many names for one number: they are written down.
+                writing.restart(timeline);
+                return;
+            }
+            writing.names = writing.names.max(name + 1);
+        }
         // What is undone next depends on what has been forgotten, so a reader has to know. The order only acts after what the mark hashes.
         if matches!(order, Order::Undo | Order::Redo) && writing.oldest != timeline.oldest() {
             writing.mark(timeline);
@@ -68,11 +81,7 @@ impl Recorder {
 
     /// Records that a fork was adopted: the timeline as it is now, in full, as its past may be another one too.
     pub fn restart(&self, timeline: &Timeline) {
-        let parts = timeline.parts(Keep::Commands);
-        let mut writing = self.writing();
-        writing.record(|encoder, bytes| encoder.start(&parts, bytes));
-        // What follows it says that it is complete.
-        writing.mark(timeline);
+        self.writing().restart(timeline);
     }
 
     /// Records what the timeline is now: a replay compares.
@@ -115,6 +124,14 @@ impl Recorder {
 }
 
 impl Writing {
+    fn restart(&mut self, timeline: &Timeline) {
+        let parts = timeline.parts(Keep::Commands);
+        self.names = parts.names.len();
+        self.record(|encoder, bytes| encoder.start(&parts, bytes));
+        // What follows it says that it is complete.
+        self.mark(timeline);
+    }
+
     fn mark(&mut self, timeline: &Timeline) {
         let mark = Mark::of(timeline);
         (self.oldest, self.marked) = (mark.oldest, Some(mark.display));

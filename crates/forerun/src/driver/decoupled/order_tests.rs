@@ -194,3 +194,57 @@ fn a_late_command_is_blended_in_and_a_local_one_changes_nothing_that_was_drawn()
     assert_eq!(driver.sample_all(&shown, &mut samples), Blending::default());
     assert_eq!(driver.offsets(), []);
 }
+
+#[test]
+fn a_body_is_added_however_many_were_added_to_forks() {
+    let mut plain = timeline();
+    let names = Names::after(&mut plain);
+    let mut heard = Heard::new(Arc::clone(&names));
+    let mut fork = heard.fork(&plain);
+    for _ in 0..70_000 {
+        names.body();
+    }
+    let ball = |x: f32| BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 })).at(Vec3::new(x, 3.0, 0.0));
+    let add = |sequence, body, x| {
+        let key = CommandKey { frame: Frame(2), source: 0, sequence };
+        crate::Order::Submit(Command { key, change: Change::Add { body, def: Box::new(ball(x)) } })
+    };
+    // Also to a fork, and to one that is adopted after it was ordered elsewhere.
+    fork.add(Frame(2), ball(-20.0)).expect("a plain ball");
+    assert_eq!(heard.obey(&mut plain, add(100, names.body(), -30.0)), Ok(()));
+    assert_eq!(
+        heard.adopt(&mut plain, fork.clone(), Frame(0)).expect_err("it has no frames"),
+        AdoptError::NotDisplayed { displayed: Frame(0), oldest: Frame(0), horizon: Frame(0) }
+    );
+    let mut adopted = fork;
+    adopted.timeline_mut().advance();
+    assert_eq!(heard.adopt(&mut plain, adopted, Frame(0)), Ok(Vec::new()));
+    assert_eq!(plain.commands().count(), 2);
+    // A name that nobody was given is not reserved for.
+    let wild = BodyId(u32::MAX);
+    let refused = Refusal::Submit(
+        CommandKey { frame: Frame(2), source: 0, sequence: 101 },
+        CommandError::UnknownBody(wild),
+    );
+    assert_eq!(heard.obey(&mut plain, add(101, wild, 0.0)), Err(refused));
+    // One that somebody else gave is not given again.
+    let other = BodyId(plain.names() as u32 + 5);
+    assert_eq!(heard.obey(&mut plain, add(102, other, -40.0)), Ok(()));
+    assert_eq!(names.body(), BodyId(other.0 + 1));
+}
+
+#[test]
+fn a_change_after_a_command_with_a_number_of_its_own_has_another() {
+    let mut driver = filled();
+    let next = driver.last_picture().frame.next();
+    let key = CommandKey { frame: next, source: 0, sequence: 0 };
+    driver.submit(Command { key, change: push(1, 1.0) }).expect("room");
+    assert_eq!(driver.change(push(2, 2.0)), Ok(CommandKey { sequence: 1, ..key }));
+    // Others count for themselves.
+    driver
+        .submit(Command { key: CommandKey { source: 7, sequence: 900, ..key }, change: push(1, 3.0) })
+        .expect("room");
+    assert_eq!(driver.change(push(2, 4.0)), Ok(CommandKey { sequence: 2, ..key }));
+    settle(&mut driver, 0.0);
+    assert_eq!(driver.refusals(), []);
+}

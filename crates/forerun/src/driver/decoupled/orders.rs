@@ -38,7 +38,8 @@ impl Decoupled {
         self.names.body()
     }
 
-    /// A command with a frame of its own, possibly in the past, as they come from a network. Local changes use source 0.
+    /// A command with a frame of its own, possibly in the past, as they come from a network. Local changes use source 0, with sequence numbers
+    /// above all that were submitted so.
     ///
     /// # Errors
     /// As [`Decoupled::change`].
@@ -83,6 +84,8 @@ impl Decoupled {
     /// # Errors
     /// As [`Decoupled::change`].
     pub fn obey(&self, order: Order) -> Result<(), DriverError> {
+        // Now, as the next change may be ordered before the physics hears this.
+        self.names.learn_sequence(&order);
         self.send(Message::Obey(order))
     }
 

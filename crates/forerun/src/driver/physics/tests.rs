@@ -15,6 +15,7 @@ struct Bench {
     messages: SyncSender<Message>,
     refusals: Receiver<Refusal>,
     forks: Receiver<Fork>,
+    names: Arc<Names>,
 }
 
 fn bench(mut timeline: Timeline) -> Bench {
@@ -27,7 +28,7 @@ fn bench(mut timeline: Timeline) -> Bench {
         messages: message_queue,
         refusals: refusal_queue,
         forks: fork_queue,
-        heard: Heard::new(names),
+        heard: Heard::new(Arc::clone(&names)),
         command_capacity: 16,
         count_areas: false,
         reach: Reach::new(timeline.settings().lookahead),
@@ -37,7 +38,7 @@ fn bench(mut timeline: Timeline) -> Bench {
         recorder: None,
         timeline,
     };
-    Bench { physics, messages, refusals, forks }
+    Bench { physics, messages, refusals, forks, names }
 }
 
 impl Bench {
@@ -177,4 +178,30 @@ fn what_is_refused_neither_shortens_the_reach_nor_publishes() {
     bench.physics.catch_up();
     assert!(bench.physics.reach != reach);
     assert_eq!(bench.physics.shared.take_drop(), Some(Frame(0)));
+}
+
+#[test]
+fn a_body_named_after_many_others_is_in_the_recording() {
+    let mut bench = bench(timeline());
+    let file = recorded(&mut bench, "many-names");
+    for _ in 0..200_000 {
+        bench.names.body();
+    }
+    let body = bench.names.body();
+    let def = BodyDef::new(Shape::sphere(0.5).expect("a ball")).at(Vec3::Y * 20.0);
+    let key = CommandKey { frame: Frame(5), source: 0, sequence: 0 };
+    let add = Order::Submit(Command { key, change: Change::Add { body, def: Box::new(def) } });
+    for order in [push(3, 1), add, push(4, 2)] {
+        bench.tell(Message::Obey(order));
+    }
+    bench.physics.catch_up();
+    bench.work();
+    assert_eq!(bench.refused(), []);
+    let recording = read(file);
+    let mut again = recording.timeline().expect("it was one");
+    while again.advance() != Progress::Idle {}
+    assert_eq!(again.diff(&bench.physics.timeline), None);
+    assert!(again.state(body, Frame(6)).is_some());
+    let replay = recording.replay(&mut |_| {}).expect("it was recorded");
+    assert!(replay.is_same() && replay.refused == 0, "{replay:?}");
 }
