@@ -252,7 +252,8 @@ impl Session {
 impl CheckReport {
     fn add(&mut self, timeline: &Timeline, reference: &Timeline) {
         let (count, first) = mismatches(timeline, reference);
-        self.mismatches += count;
+        // Frames that only one of them has do not agree either.
+        self.mismatches += count + timeline.horizon().0.abs_diff(reference.horizon().0);
         self.first_mismatch = self.first_mismatch.or(first);
     }
 

@@ -1,6 +1,7 @@
 //! Command log: the accepted commands, by when they act and by body.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use forerun_dynamics::BodyId;
 use forerun_geometry::Vec3;
@@ -11,7 +12,8 @@ use crate::command::{Change, CommandKey};
 /// The accepted commands that are not older than the oldest frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CommandLog {
-    by_key: BTreeMap<CommandKey, Change>,
+    /// Copies of a log share the changes.
+    by_key: BTreeMap<CommandKey, Arc<Change>>,
     by_body: BTreeSet<(BodyId, CommandKey)>,
 }
 
@@ -21,7 +23,7 @@ impl CommandLog {
     }
 
     pub(crate) fn get(&self, key: &CommandKey) -> Option<&Change> {
-        self.by_key.get(key)
+        self.by_key.get(key).map(AsRef::as_ref)
     }
 
     /// Whether a command acts at or before a frame.
@@ -33,12 +35,12 @@ impl CommandLog {
         if let Some(body) = change.body() {
             self.by_body.insert((body, key));
         }
-        self.by_key.insert(key, change);
+        self.by_key.insert(key, Arc::new(change));
     }
 
     /// Takes a command back; what it was.
     pub(crate) fn remove(&mut self, key: &CommandKey) -> Option<Change> {
-        let change = self.by_key.remove(key)?;
+        let change = Arc::unwrap_or_clone(self.by_key.remove(key)?);
         if let Some(body) = change.body() {
             self.by_body.remove(&(body, *key));
         }
@@ -47,13 +49,13 @@ impl CommandLog {
 
     /// The commands of a frame in the order in which they act.
     pub(crate) fn at(&self, frame: Frame) -> impl Iterator<Item = &Change> {
-        self.by_key.range(first_key(frame)..=last_key(frame)).map(|(_, change)| change)
+        self.by_key.range(first_key(frame)..=last_key(frame)).map(|(_, change)| change.as_ref())
     }
 
     /// The commands to one body at a frame in the order in which they act.
     pub(crate) fn of_body_at(&self, body: BodyId, frame: Frame) -> impl Iterator<Item = &Change> {
         let keys = self.by_body.range((body, first_key(frame))..=(body, last_key(frame)));
-        keys.filter_map(|(_, key)| self.by_key.get(key))
+        keys.filter_map(|(_, key)| self.get(key))
     }
 
     /// The commands to one body at a frame or later.
@@ -63,12 +65,12 @@ impl CommandLog {
         frame: Frame,
     ) -> impl Iterator<Item = (CommandKey, &Change)> {
         let keys = self.by_body.range((body, first_key(frame))..=(body, last_key(Frame(u64::MAX))));
-        keys.filter_map(|(_, key)| Some((*key, self.by_key.get(key)?)))
+        keys.filter_map(|(_, key)| Some((*key, self.get(key)?)))
     }
 
     /// The changes of gravity at a frame or later.
     pub(crate) fn gravities_from(&self, frame: Frame) -> impl Iterator<Item = (Frame, Vec3)> {
-        self.by_key.range(first_key(frame)..).filter_map(|(key, change)| match change {
+        self.by_key.range(first_key(frame)..).filter_map(|(key, change)| match change.as_ref() {
             // Adding +0 makes -0 positive: equal gravity has equal bits.
             Change::SetGravity { gravity } => Some((key.frame, *gravity + Vec3::ZERO)),
             _ => None,
@@ -87,7 +89,7 @@ impl CommandLog {
 
     /// All commands in the order in which they act.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&CommandKey, &Change)> {
-        self.by_key.iter()
+        self.by_key.iter().map(|(key, change)| (key, change.as_ref()))
     }
 
     /// Forgets the commands at or before `oldest`; the bodies they changed.

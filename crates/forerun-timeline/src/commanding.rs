@@ -38,6 +38,11 @@ pub(crate) struct Effect {
 /// By commanded body.
 pub(crate) type FrameEffects = BTreeMap<BodyId, Effect>;
 
+/// How many commands did nothing.
+pub(crate) fn ignored(effects: &FrameEffects) -> u64 {
+    effects.values().map(|effect| u64::from(effect.ignored)).sum()
+}
+
 /// A frame whose states come out of the step.
 pub(crate) struct Arrival<'a> {
     /// The frame.

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use forerun_dynamics::{Body, BodyDef, BodyId, Environment};
 use forerun_geometry::Vec3;
+use forerun_geometry::shape::{Shape, Sphere};
 
 use crate::Frame;
 use crate::command::{Change, CommandKey};
@@ -152,9 +153,18 @@ impl Definitions {
         for body in bodies {
             if let Some(history) = self.history_mut(body) {
                 drop_before(&mut history.entries, oldest);
+                // Gone for good: its name is used up, but what it was made of need not be kept.
+                if matches!(history.entries[..], [(_, None)]) && history.def.is_some() {
+                    history.def = Some(gone());
+                }
             }
         }
     }
+}
+
+/// What stands for how a body was made that is gone for good.
+fn gone() -> Arc<BodyDef> {
+    Arc::new(BodyDef::new(Shape::Sphere(Sphere { radius: 1.0 })))
 }
 
 /// What holds at a frame: the last entry at or before it.

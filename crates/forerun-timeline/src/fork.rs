@@ -2,7 +2,7 @@
 
 use forerun_dynamics::BodyId;
 
-use crate::{Frame, Timeline};
+use crate::{Frame, Stats, Timeline, TimelineSettings};
 
 /// Where two timelines first part.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,11 +50,16 @@ impl Timeline {
         })
     }
 
-    /// A fork takes this timeline's place: its commands, states and names. The display and the settings stay; what this timeline did
-    /// since the fork is gone.
+    /// A fork takes this timeline's place: its commands, states and names. The settings stay, but for what the states depend on (whether
+    /// contacts are recorded), and the display, if the fork still keeps its frame: else it is at the oldest that the fork does. What
+    /// this timeline did since the fork is gone; its counters, and the sequence numbers that were used, are not.
     pub fn adopt(&mut self, fork: Timeline) {
-        let (settings, display, stats) = (self.settings, self.display, self.stats);
-        *self = Timeline { settings, stats, ..fork };
+        let record_contacts = fork.settings.record_contacts;
+        let settings = TimelineSettings { record_contacts, ..self.settings };
+        let display = self.display.max(fork.oldest());
+        let stats = Stats { ignored: fork.stats.ignored, ..self.stats };
+        let next_sequence = self.next_sequence.max(fork.next_sequence);
+        *self = Timeline { settings, stats, next_sequence, ..fork };
         self.set_display(display);
     }
 }

@@ -196,7 +196,7 @@ impl Timeline {
         }
         // The command ends everybody's rest.
         if frame <= horizon {
-            self.stale.entry(frame.minus(1)).or_default().everyone = true;
+            self.stale.entry(frame.minus(1)).or_default().all_touched = true;
         }
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use forerun_dynamics::bounds;
 
 use crate::areas::Until;
-use crate::timeline::ignored;
+use crate::commanding::ignored;
 use crate::{Frame, Timeline};
 
 impl Timeline {
@@ -76,12 +76,12 @@ impl Timeline {
             Arc::make_mut(&mut self.definitions).forget_before(oldest, commanded.into_iter());
         }
         // Also where no command is left of what was taken back.
-        self.undo.forget_to(oldest);
+        if self.undo.begins_by(oldest) {
+            Arc::make_mut(&mut self.undo).forget_to(oldest);
+        }
         if self.effects.keys().next().is_some_and(|first| *first <= oldest) {
             let effects = Arc::make_mut(&mut self.effects);
-            let kept = effects.split_off(&oldest.next());
-            let forgotten = std::mem::replace(effects, kept);
-            self.stats.ignored += ignored(&forgotten);
+            *effects = effects.split_off(&oldest.next());
         }
         self.areas.forget_before(oldest);
     }
@@ -98,7 +98,8 @@ impl Timeline {
         self.tables.forget_after(last);
         self.stale.split_off(&last);
         if self.effects.keys().next_back().is_some_and(|latest| *latest > last) {
-            Arc::make_mut(&mut self.effects).split_off(&last.next());
+            let forgotten = Arc::make_mut(&mut self.effects).split_off(&last.next());
+            self.stats.ignored -= forgotten.values().map(|effects| ignored(effects)).sum::<u64>();
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Order: what may be asked of the commands of a timeline, and how the local user's orders are undone and done again.
 
+use std::sync::Arc;
+
 use crate::command::{Command, CommandError, CommandKey};
 use crate::{Frame, Timeline};
 
@@ -29,6 +31,11 @@ pub(crate) struct UndoLog {
 }
 
 impl UndoLog {
+    /// Whether an order is on a command at or before `oldest`.
+    pub(crate) fn begins_by(&self, oldest: Frame) -> bool {
+        self.undo.iter().chain(&self.redo).any(|order| order.key().is_some_and(|key| key.frame <= oldest))
+    }
+
     /// Forgets the orders on commands at or before `oldest`.
     pub(crate) fn forget_to(&mut self, oldest: Frame) {
         let kept = |order: &Order| order.key().is_none_or(|key| key.frame > oldest);
@@ -60,8 +67,9 @@ impl Timeline {
                 let local = order.key().is_some_and(|key| key.source == LOCAL);
                 let inverse = self.perform(order)?;
                 if local {
-                    self.undo.undo.push(inverse);
-                    self.undo.redo.clear();
+                    let undo = Arc::make_mut(&mut self.undo);
+                    undo.undo.push(inverse);
+                    undo.redo.clear();
                 }
                 Ok(())
             }
@@ -71,16 +79,14 @@ impl Timeline {
     /// Takes back the local user's last order, also one in the past; the key of its command.
     ///
     /// # Errors
-    /// [`CommandError::NothingToUndo`]: none is left whose frame is still kept. When it cannot be done for another reason, that; then
-    /// nothing changed.
+    /// [`CommandError::NothingToUndo`]: none is left whose frame is still kept. When it cannot be done for another reason, that; the next
+    /// call goes on with the order before it.
     pub fn undo(&mut self) -> Result<CommandKey, CommandError> {
-        while let Some(order) = self.undo.undo.last().cloned() {
+        while let Some(order) = Arc::make_mut(&mut self.undo).undo.pop() {
             if let Some((key, inverse)) = self.perform_known(order)? {
-                self.undo.redo.push(inverse);
-                self.undo.undo.pop();
+                Arc::make_mut(&mut self.undo).redo.push(inverse);
                 return Ok(key);
             }
-            self.undo.undo.pop();
         }
         Err(CommandError::NothingToUndo)
     }
@@ -90,13 +96,11 @@ impl Timeline {
     /// # Errors
     /// [`CommandError::NothingToRedo`]: nothing was undone since the local user's last order.
     pub fn redo(&mut self) -> Result<CommandKey, CommandError> {
-        while let Some(order) = self.undo.redo.last().cloned() {
+        while let Some(order) = Arc::make_mut(&mut self.undo).redo.pop() {
             if let Some((key, inverse)) = self.perform_known(order)? {
-                self.undo.undo.push(inverse);
-                self.undo.redo.pop();
+                Arc::make_mut(&mut self.undo).undo.push(inverse);
                 return Ok(key);
             }
-            self.undo.redo.pop();
         }
         Err(CommandError::NothingToRedo)
     }

@@ -14,6 +14,7 @@ use crate::areas::{Areas, Until};
 use crate::command_log::CommandLog;
 use crate::definitions::Definitions;
 use crate::frame_table::{Entry, FrameTable};
+use crate::order::UndoLog;
 use crate::tables::Tables;
 use crate::timeline::area_edge;
 use crate::{Change, Command, CommandKey, Frame, Order, Progress, Stats, Timeline, TimelineSettings};
@@ -167,8 +168,7 @@ impl Timeline {
         let mut timeline = bare.map_err(|error| wrong("environment", error))?;
         timeline.put_bodies(&parts)?;
         timeline.put_commands(&parts)?;
-        timeline.undo.undo = parts.undo;
-        timeline.undo.redo = parts.redo;
+        timeline.undo = Arc::new(UndoLog { undo: parts.undo, redo: parts.redo });
         timeline.put_states(&parts.frames)?;
         timeline.display = parts.display;
         timeline.fit_memory();
@@ -285,7 +285,7 @@ impl Timeline {
             self.tables.push(next);
         }
         self.settings = settings;
-        self.stats = Stats::default();
+        self.stats = Stats { ignored: self.stats.ignored, ..Stats::default() };
         Ok(())
     }
 }

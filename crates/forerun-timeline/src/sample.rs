@@ -46,7 +46,7 @@ pub(crate) fn beyond(state: &BodyState, frames: f32, frame_seconds: f32) -> Body
     let mut next = *state;
     next.position += state.velocity * seconds;
     let speed = state.angular_velocity.length();
-    if speed > 0.0 {
+    if speed > 0.0 && speed.is_finite() {
         let (sine, cosine) = libm::sincosf(0.5 * speed * seconds);
         let axis = state.angular_velocity * (sine / speed);
         next.rotation = (Quat::from_xyzw(axis.x, axis.y, axis.z, cosine) * state.rotation).normalize();

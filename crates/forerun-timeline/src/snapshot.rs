@@ -82,13 +82,21 @@ impl Timeline {
 
     /// The bodies that wait to be recomputed. Sorted by body. There may be more: whom these will reach is not known yet.
     pub(crate) fn doubtful(&self) -> Vec<Doubt> {
-        let mut doubtful = BTreeMap::new();
-        for (frame, stale) in &self.stale {
-            let body_now = |body| self.definitions.body(body, *frame);
-            let stepped = stale.stepped_otherwise(self.table(*frame), body_now);
-            for body in self.out_of_date(*frame, stale) {
-                let arrives = stepped.binary_search(&body).is_err();
-                doubtful.entry(body).or_insert(Doubt { body, known_to: *frame, arrives });
+        let mut doubtful: BTreeMap<BodyId, Doubt> = BTreeMap::new();
+        for (known_to, stale) in &self.stale {
+            let table = self.table(*known_to);
+            let mut doubt = |body: BodyId, arrives: bool| {
+                doubtful.entry(body).or_insert(Doubt { body, known_to: *known_to, arrives });
+            };
+            let differing = stale.differing(table, |body| self.definitions.body(body, *known_to));
+            differing.into_iter().for_each(|body| doubt(body, false));
+            stale.touched.iter().for_each(|body| doubt(*body, true));
+            // Once all are in doubt there is nobody to look for in the frames that follow.
+            if (stale.everyone || stale.all_touched) && doubtful.len() < table.population() {
+                for (body, _) in table.iter() {
+                    let doubt = Doubt { body, known_to: *known_to, arrives: !stale.everyone };
+                    doubtful.entry(body).or_insert(doubt);
+                }
             }
         }
         doubtful.into_values().collect()

@@ -2,7 +2,7 @@
 //!
 //! *Invariant.* Let `S(k)` be the table stored at frame `k`, and for each frame `k` below the horizon let `O(k)` be its *old inputs*:
 //! `S(k)`, the bodies and gravity at `k`, except where `Stale` of `k` says otherwise (`basis` in place of `S(k)`, `bodies` in place
-//! of those bodies). Then every entry of `S(k+1)`, but for the bodies in `touched` (or all of them when `everyone` is set), is what a
+//! of those bodies). Then every entry of `S(k+1)`, but for the bodies in `touched` (or all of them when `everyone` or `all_touched` is set), is what a
 //! full step from `O(k)` followed by the commands of `k+1` gives.
 //!
 //! Where there is no `Stale`, `O(k)` is what is stored, so if there is none before frame `n`, all frames up to `n` equal a full
@@ -32,7 +32,9 @@ pub(crate) struct Stale {
     pub(crate) bodies: BTreeMap<BodyId, Option<Arc<Body>>>,
     /// Bodies whose entry in `S(k+1)` is wrong whatever it was computed from: their commands at `k+1` changed.
     pub(crate) touched: BTreeSet<BodyId>,
-    /// All entries of `S(k+1)` may be wrong.
+    /// All entries of `S(k+1)` may be wrong, as by `touched`: a command to all of them changed. Where the step leads is known.
+    pub(crate) all_touched: bool,
+    /// All entries of `S(k+1)` may be wrong, wherever the step leads.
     pub(crate) everyone: bool,
 }
 
@@ -49,33 +51,25 @@ impl Stale {
         stored: &Arc<FrameTable>,
         body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
     ) -> Vec<BodyId> {
-        let mut bodies = self.stepped_otherwise(stored, body_now);
-        if !self.touched.is_empty() {
-            bodies.extend(&self.touched);
-            bodies.sort_unstable();
-            bodies.dedup();
+        let mut bodies = self.differing(stored, body_now);
+        if self.everyone || self.all_touched {
+            bodies.extend(stored.iter().map(|(body, _)| body));
         }
+        bodies.extend(&self.touched);
+        bodies.sort_unstable();
+        bodies.dedup();
         bodies
     }
 
-    /// Those among them that the step itself may lead elsewhere, and not only commands after it. Sorted.
-    pub(crate) fn stepped_otherwise<'a>(
+    /// Those among them that are not, or are not how, they were when the next frame was computed. In no order.
+    pub(crate) fn differing<'a>(
         &self,
         stored: &Arc<FrameTable>,
         body_now: impl Fn(BodyId) -> Option<&'a Arc<Body>>,
     ) -> Vec<BodyId> {
         let mut bodies = self.basis.as_ref().map_or_else(Vec::new, |old| stored.differences(old));
-        if self.everyone {
-            bodies.extend(stored.iter().map(|(body, _)| body));
-        }
-        bodies.extend(
-            self.bodies
-                .iter()
-                .filter(|(body, old)| !same_body(body_now(**body), old.as_ref()))
-                .map(|(b, _)| *b),
-        );
-        bodies.sort_unstable();
-        bodies.dedup();
+        let redefined = self.bodies.iter().filter(|(body, old)| !same_body(body_now(**body), old.as_ref()));
+        bodies.extend(redefined.map(|(body, _)| *body));
         bodies
     }
 }

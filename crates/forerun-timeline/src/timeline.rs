@@ -65,7 +65,7 @@ pub struct Timeline {
     pub(crate) tables: Tables,
     pub(crate) definitions: Arc<Definitions>,
     pub(crate) log: Arc<CommandLog>,
-    pub(crate) undo: UndoLog,
+    pub(crate) undo: Arc<UndoLog>,
     /// By frame below the horizon: what of the step that leaves it is out of date.
     pub(crate) stale: BTreeMap<Frame, Stale>,
     /// By frame: what its commands did.
@@ -115,7 +115,7 @@ impl Timeline {
             tables: Tables::new(Frame(0), Arc::new(FrameTable::new(&states))),
             definitions: Arc::new(Definitions::new(made, environment)),
             log: Arc::default(),
-            undo: UndoLog::default(),
+            undo: Arc::default(),
             stale: BTreeMap::new(),
             effects: Arc::default(),
             areas,
@@ -218,7 +218,6 @@ impl Timeline {
     #[must_use]
     pub fn stats(&self) -> Stats {
         Stats {
-            ignored: self.stats.ignored + ignored(&self.effects),
             last_edit: self.edits.back().copied().unwrap_or_default(),
             past_frames: self.display.since(self.oldest()),
             lookahead_frames: self.horizon().since(self.display),
@@ -237,6 +236,12 @@ impl Timeline {
     #[must_use]
     pub fn state_bytes(&self) -> usize {
         self.tables.bytes()
+    }
+
+    /// An accepted command that acts after the oldest frame.
+    #[must_use]
+    pub fn command(&self, key: &CommandKey) -> Option<&Change> {
+        self.log.get(key)
     }
 
     pub(crate) fn table(&self, frame: Frame) -> &Arc<FrameTable> {
@@ -266,11 +271,6 @@ impl Timeline {
     pub fn recompute_all(&mut self) {
         self.recompute_all = true;
     }
-}
-
-/// How many commands did nothing.
-pub(crate) fn ignored(effects: &BTreeMap<Frame, Arc<FrameEffects>>) -> u64 {
-    effects.values().flat_map(|frame| frame.values()).map(|effect| u64::from(effect.ignored)).sum()
 }
 
 /// An edge of areas that suits the bodies: four times the radius of the middle one of those that move. Metres.

@@ -13,7 +13,7 @@ use forerun_dynamics::{
 use crate::Frame;
 use crate::affected::{Affected, Inputs, Mutation, affected};
 use crate::areas::Until;
-use crate::commanding::{Arrival, FrameEffects};
+use crate::commanding::{Arrival, FrameEffects, ignored};
 use crate::frame_table::Entry;
 use crate::stale::Stale;
 use crate::stats::Advance;
@@ -29,6 +29,8 @@ impl Timeline {
 
     /// As [`Timeline::advance`], with an observer of the stages of the step.
     pub fn advance_observed(&mut self, observer: &mut dyn Observer) -> Progress {
+        // Here and not after the work, in which the display may have moved on.
+        self.fit_memory();
         while let Some((frame, stale)) = self.stale.pop_first() {
             let out_of_date = self.out_of_date(frame, &stale);
             // Nothing is left to do where a change was taken back or came out as it was: the early cutoff.
@@ -110,7 +112,7 @@ impl Timeline {
             ask_everybody: self.recompute_all,
         };
         let entries = entries(&group, &next, out_of_date);
-        let outdated = stale.everyone.then(|| stored.touches());
+        let outdated = (stale.everyone || stale.all_touched).then(|| stored.touches());
         let told = touches.map(|touches| Told::new(&entries, &group, &touches, table.touches(), outdated));
         // Forks and later edits share the effects: to touch them is to copy.
         let mut effects = match self.effects.contains_key(&arrival) {
@@ -120,7 +122,9 @@ impl Timeline {
                 .unwrap_or_default(),
             false => FrameEffects::default(),
         };
+        self.stats.ignored -= ignored(&effects);
         let mut entries = arrived.apply_commands(entries, stale, &mut self.areas, &mut effects);
+        self.stats.ignored += ignored(&effects);
         if let Mutation::Tolerance(tolerance) = self.mutation {
             entries.retain(|(body, state)| !nearly(stored.get(*body), state.as_ref(), tolerance));
         }
@@ -151,7 +155,6 @@ impl Timeline {
             extended,
         };
         self.count(&done, report.quarantined);
-        self.fit_memory();
         done
     }
 

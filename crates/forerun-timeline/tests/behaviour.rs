@@ -340,3 +340,49 @@ fn what_waits_to_be_recomputed_goes_on_and_then_holds() {
     let _ = timeline.advance();
     assert_eq!(timeline.valid_to(), Frame(20));
 }
+
+#[test]
+fn a_change_of_gravity_changes_nothing_that_is_shown_before_it() {
+    let mut bodies = far_piles();
+    let mut faller = cube(55.0, 1.2);
+    faller.velocity = Vec3::new(3.0, -4.0, 0.0);
+    bodies.push(faller);
+    let mut timeline = timeline(&bodies, 60);
+    let seconds = 8.6 * DT;
+    let shown = |timeline: &Timeline| -> Vec<(BodyId, Pose, Vec3)> {
+        let mut samples = Vec::new();
+        timeline.snapshot().sample_all(seconds, &mut samples);
+        samples.into_iter().map(|(body, sample)| (body, sample.pose, sample.velocity)).collect()
+    };
+    let before = shown(&timeline);
+    timeline.change(Frame(9), Change::SetGravity { gravity: Vec3::new(2.0, 5.0, 0.0) }).unwrap();
+    for _ in 0..3 {
+        assert!(shown(&timeline) == before);
+        let _ = timeline.advance();
+    }
+    // Beyond it, all wait to be recomputed, and say so.
+    timeline.change(Frame(9), Change::SetGravity { gravity: Vec3::new(-2.0, 5.0, 0.0) }).unwrap();
+    let late = timeline.snapshot().sample(BodyId(31), 9.5 * DT).unwrap();
+    assert_eq!(late.certainty, Certainty::Extrapolated);
+}
+
+#[test]
+fn what_a_body_was_made_of_is_not_kept_when_it_is_gone_for_good() {
+    let settings = TimelineSettings { lookahead: 20, past: 10, ..TimelineSettings::default() };
+    let mut timeline = Timeline::new(&far_piles(), Environment::default(), settings).unwrap();
+    let points: Vec<Vec3> =
+        (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
+    let hull = Arc::new(forerun_geometry::shape::Hull::new(&points).unwrap());
+    let watched = Arc::downgrade(&hull);
+    let body = timeline.reserve_body();
+    let def = BodyDef::new(Shape::Hull(hull)).at(Vec3::new(150.0, 1.0, 0.0));
+    timeline.change(Frame(2), Change::Add { body, def: Box::new(def) }).unwrap();
+    timeline.change(Frame(5), Change::Remove { body }).unwrap();
+    for display in 0..40 {
+        assert_eq!(watched.strong_count() > 0, display <= 15, "at {display}");
+        timeline.set_display(Frame(display));
+        run(&mut timeline);
+    }
+    let again = Change::Add { body, def: Box::new(cube(150.0, 1.0)) };
+    assert_eq!(timeline.change(Frame(45), again), Err(CommandError::BodyExists(body)));
+}
