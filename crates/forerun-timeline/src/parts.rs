@@ -178,7 +178,9 @@ impl Timeline {
     /// Forgets how to undo orders on commands up to a frame, as when that frame were the oldest: for who repeats the orders of a session that
     /// had forgotten more than this timeline.
     pub fn forget_undo_to(&mut self, oldest: Frame) {
-        self.undo.forget_to(oldest);
+        if self.undo.begins_by(oldest) {
+            Arc::make_mut(&mut self.undo).forget_to(oldest);
+        }
     }
 
     /// The bodies at the oldest frame.

@@ -39,7 +39,7 @@ pub struct Recording {
 /// What is recorded of a session after its start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// An order that was obeyed.
+    /// An order that was obeyed, or an undo or redo that was tried in vain.
     Order(Order),
     /// What was so when all orders so far had been worked off to a frame.
     Mark(Mark),
@@ -93,7 +93,10 @@ impl Recording {
             match event {
                 Event::Order(order) => {
                     let obeyed = obey(&mut timeline, order);
-                    obeyed.map_err(|error| RecordingError::impossible(format!("an order: {error}")))?;
+                    // What could not be undone in the session cannot be here, and is forgotten as it was there.
+                    if !matches!(order, Order::Undo | Order::Redo) {
+                        obeyed.map_err(|error| RecordingError::impossible(format!("an order: {error}")))?;
+                    }
                 }
                 Event::Mark(mark) => {
                     timeline.set_display(mark.display);

@@ -86,7 +86,7 @@ impl Heard {
         undo: fn(&mut Timeline) -> Result<CommandKey, CommandError>,
     ) -> Result<(CommandKey, Option<Change>), CommandError> {
         let key = undo(timeline)?;
-        let stands = if self.has_forks() { change_of(timeline, &key).cloned() } else { None };
+        let stands = if self.has_forks() { timeline.command(&key).cloned() } else { None };
         Ok((key, stands))
     }
 
@@ -147,7 +147,7 @@ impl Heard {
         key: CommandKey,
         change: Option<Change>,
     ) -> Result<(), Refusal> {
-        let standing = change_of(timeline, &key);
+        let standing = timeline.command(&key);
         let order = match change {
             Some(change) if standing.is_none() => Order::Submit(Command { key, change }),
             Some(change) if standing != Some(&change) => Order::Replace(Command { key, change }),
@@ -162,8 +162,4 @@ impl Heard {
         };
         timeline.obey(order).map_err(|error| refusal(key, error))
     }
-}
-
-fn change_of<'a>(timeline: &'a Timeline, key: &CommandKey) -> Option<&'a Change> {
-    timeline.commands().find(|(other, _)| *other == key).map(|(_, change)| change)
 }

@@ -233,14 +233,15 @@ impl Physics {
     /// Obeys and records an order; whether it was possible.
     fn obey(&mut self, order: Order) -> bool {
         let recorded = self.recorder.is_some().then(|| order.clone());
-        if let Err(refusal) = self.heard.obey(&mut self.timeline, order) {
-            self.refuse([refusal]);
-            return false;
-        }
-        if let Some((recorder, order)) = self.recorder.as_ref().zip(recorded) {
+        let refusal = self.heard.obey(&mut self.timeline, order).err();
+        if let Some((recorder, order)) = self.recorder.as_ref().zip(recorded)
+            && refusal.as_ref().is_none_or(Refusal::forgets)
+        {
             recorder.order(&order, &self.timeline);
         }
-        true
+        let obeyed = refusal.is_none();
+        self.refuse(refusal);
+        obeyed
     }
 
     /// Adopts a fork, and records the timeline that it is from now on; whether it was possible.

@@ -38,6 +38,16 @@ pub enum AdoptError {
 }
 
 impl Refusal {
+    /// Whether what was asked is forgotten all the same: an undo that fails is not tried again, but the one before it.
+    pub(super) fn forgets(&self) -> bool {
+        match self {
+            Refusal::Undo(error) | Refusal::Redo(error) => {
+                !matches!(error, CommandError::NothingToUndo | CommandError::NothingToRedo)
+            }
+            Refusal::Submit(..) | Refusal::Retract(..) | Refusal::Replace(..) | Refusal::Adopt(_) => false,
+        }
+    }
+
     /// The command that it is about, if it is about one.
     #[must_use]
     pub fn key(&self) -> Option<CommandKey> {

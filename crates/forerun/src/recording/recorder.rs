@@ -58,7 +58,8 @@ impl Recorder {
         Ok(Recorder(Arc::new(Mutex::new(writing))))
     }
 
-    /// Records an order: to be called with every order that `timeline` obeyed, right after it did. One that was refused is not recorded.
+    /// Records an order: to be called with every order that `timeline` obeyed, right after it did. One that was refused is not recorded, except an
+    /// undo or redo for which there was something: that is forgotten by it.
     pub fn order(&self, order: &Order, timeline: &Timeline) {
         let mut writing = self.writing();
         if let Order::Submit(command) | Order::Replace(command) = order

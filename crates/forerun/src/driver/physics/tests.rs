@@ -205,3 +205,36 @@ fn a_body_named_after_many_others_is_in_the_recording() {
     let replay = recording.replay(&mut |_| {}).expect("it was recorded");
     assert!(replay.is_same() && replay.refused == 0, "{replay:?}");
 }
+
+#[test]
+fn an_undo_that_fails_is_recorded_as_it_is_not_tried_again() {
+    let mut bench = bench(timeline());
+    let file = recorded(&mut bench, "failing-undo");
+    let def = || Box::new(BodyDef::new(Shape::sphere(0.5).expect("a ball")).at(Vec3::Y * 20.0));
+    let body = BodyId(3);
+    let key = CommandKey { frame: Frame(4), source: 0, sequence: 1 };
+    let others = CommandKey { source: 1, ..key };
+    let orders = [
+        push(3, 0),
+        Order::Submit(Command { key, change: Change::Add { body, def: def() } }),
+        Order::Retract(key),
+        Order::Submit(Command { key: others, change: Change::Add { body, def: def() } }),
+        // The body cannot be added again, and the push is undone next.
+        Order::Undo,
+        Order::Undo,
+        Order::Undo,
+    ];
+    for order in &orders {
+        bench.tell(Message::Obey(order.clone()));
+    }
+    bench.physics.catch_up();
+    let refused = bench.refused();
+    assert!(matches!(&refused[..], [Refusal::Undo(_), Refusal::Undo(_)]), "{refused:?}");
+    assert_eq!(bench.physics.timeline.commands().count(), 1);
+    let recording = read(file);
+    assert_eq!(orders_of(&recording), orders[..6]);
+    let again = recording.timeline().expect("it was one");
+    assert_eq!(again.parts(crate::Keep::Commands), bench.physics.timeline.parts(crate::Keep::Commands));
+    let replay = recording.replay(&mut |_| {}).expect("it was recorded");
+    assert_eq!((replay.orders, replay.refused), (5, 1));
+}
