@@ -22,6 +22,9 @@ use crate::{Change, Command, CommandKey, Frame, Order, Progress, Stats, Timeline
 /// Frames beyond this have no exact time, and no session gets there.
 const FRAME_MAX: u64 = 1 << 53;
 
+/// How far the squared length of a stored rotation may be off 1: far more than rounding does.
+const UNIT_TOLERANCE: f32 = 1e-3;
+
 /// What is kept of the states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keep {
@@ -337,12 +340,17 @@ fn make(part: &NameParts, environment: &Environment) -> Result<Option<Arc<Body>>
     Ok(Some(Arc::new(Body { material, force, torque, gravity_scale, spring: now.spring, ..made })))
 }
 
-/// What every stored state is: finite, without -0, and not longer at rest than there is.
+/// What every stored state is: finite, without -0, turned by a unit quaternion, and not longer at rest than there is.
 fn check_state(state: &BodyState, environment: &Environment) -> Result<(), String> {
     if !(state.is_finite() && state.same_bits(&state.canonical())) {
         return Err("has a number that is not finite, or -0".to_owned());
     }
-    let most = environment.settings.rest_frames() + 1;
+    let [x, y, z, w] = state.rotation.to_array();
+    let squared = x * x + y * y + z * z + w * w;
+    if (squared - 1.0).abs() > UNIT_TOLERANCE {
+        return Err(format!("has a rotation of squared length {squared}, not 1"));
+    }
+    let most = environment.settings.rest_frames().saturating_add(1);
     if state.rest > most {
         return Err(format!("rests for {} frames, of at most {most}", state.rest));
     }
