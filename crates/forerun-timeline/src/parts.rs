@@ -20,7 +20,7 @@ use crate::timeline::area_edge;
 use crate::{Change, Command, CommandKey, Frame, Order, Progress, Stats, Timeline, TimelineSettings};
 
 /// Frames beyond this have no exact time, and no session gets there.
-const FRAME_MAX: u64 = 1 << 53;
+pub const FRAME_MAX: u64 = 1 << 53;
 
 /// How far the squared length of a stored rotation may be off 1: far more than rounding does.
 const UNIT_TOLERANCE: f32 = 1e-3;

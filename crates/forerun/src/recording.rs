@@ -17,7 +17,7 @@ mod states;
 use std::path::Path;
 
 use forerun_timeline::parts::{Keep, TimelineParts};
-use forerun_timeline::{Change, CommandError, Frame, Order, Timeline};
+use forerun_timeline::{Change, CommandError, Frame, Order, Timeline, TimelineSettings};
 
 pub use decode::Recovered;
 pub use error::{RecordingError, RecordingFault};
@@ -50,11 +50,11 @@ pub enum Event {
 /// A hash to compare a replay with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
-    /// Where the display was.
+    /// Where the display was: at most 2^53.
     pub display: Frame,
     /// The oldest frame that was kept.
     pub oldest: Frame,
-    /// The frame that was hashed.
+    /// The frame that was hashed: at most past and lookahead after the displayed and the oldest one.
     pub frame: Frame,
     /// [`Timeline::state_hash`] of that frame.
     pub hash: u64,
@@ -75,11 +75,18 @@ impl Mark {
     }
 }
 
+/// How far after the oldest and the displayed frame a mark may be: a replay computes up to there.
+fn mark_reach(settings: &TimelineSettings) -> u64 {
+    u64::from(settings.past) + u64::from(settings.lookahead)
+}
+
 impl Recording {
     /// A timeline as it is now.
     #[must_use]
     pub fn of(timeline: &Timeline, keep: Keep) -> Recording {
-        let mark = Mark::at(timeline, timeline.valid_to());
+        // The lookahead may have been longer once.
+        let most = timeline.display().max(timeline.oldest()).plus(mark_reach(&timeline.settings()));
+        let mark = Mark::at(timeline, timeline.valid_to().min(most));
         Recording { start: timeline.parts(keep), events: vec![Event::Mark(mark)] }
     }
 

@@ -211,6 +211,35 @@ fn impossible_states_are_refused() {
     drop(Timeline::from_parts(long));
 }
 
+#[test]
+fn a_mark_that_no_session_gets_to_is_refused() {
+    let timeline = scenes().remove(0);
+    let start = Recording::of(&timeline, Keep::Commands).start;
+    let told = |display, oldest, frame| {
+        let mark = Mark { display: Frame(display), oldest: Frame(oldest), frame: Frame(frame), hash: 1 };
+        let recording = Recording { start: start.clone(), events: vec![Event::Mark(mark)] };
+        let bytes = recording.encode().expect("it is small");
+        let readable = Recording::decode_readable(&bytes).expect("its start is whole").recording.events.len();
+        Recording::decode(&bytes).map_err(|error| (error.to_string(), readable)).err()
+    };
+    // 25 frames ahead and 20 back.
+    assert_eq!((told(0, 0, 45), told(100, 80, 145), told(0, 100, 145)), (None, None, None));
+    for (display, oldest, frame) in [(0, 0, 46), (100, 80, u64::MAX), (0, u64::MAX, 0), (1 << 54, 0, 1 << 54)]
+    {
+        let (message, readable) = told(display, oldest, frame).expect("nobody gets there");
+        assert!(message.contains("a mark") && readable == 0, "{message}");
+    }
+    // What was computed before the lookahead was made shorter can be saved all the same.
+    let mut timeline = timeline;
+    timeline.set_lookahead(200);
+    finish(&mut timeline);
+    timeline.set_lookahead(1);
+    for keep in [Keep::Commands, Keep::States] {
+        let recording = Recording::of(&timeline, keep);
+        assert_eq!(Recording::decode(&recording.encode().expect("it is small")).as_ref(), Ok(&recording));
+    }
+}
+
 /// What the user could take back or do again is the same after, also where what was forgotten stood in between.
 #[test]
 fn a_recorded_session_can_be_undone_after_as_before() {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use forerun_geometry::Shape;
 use forerun_timeline::Frame;
-use forerun_timeline::parts::TimelineParts;
+use forerun_timeline::parts::{FRAME_MAX, TimelineParts};
 
 use super::error::{RecordingError, RecordingFault};
 use super::file::{Reader, Record};
@@ -14,7 +14,7 @@ use super::large_shapes::large_shape_of;
 use super::orders::{command_of, order_of};
 use super::start::{name_of, start_of};
 use super::states::LastStates;
-use super::{Event, Mark, Recording};
+use super::{Event, Mark, Recording, mark_reach};
 
 /// The readable part of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,6 +113,8 @@ struct Decoder {
     /// The first timeline, once something follows it.
     start: Option<TimelineParts>,
     events: Vec<Event>,
+    /// Of the timeline that was read last.
+    mark_reach: u64,
     /// The timeline that is being read.
     building: Option<TimelineParts>,
     /// How many names it is to have.
@@ -189,16 +191,36 @@ impl Decoder {
         if self.start.is_none() {
             return Err("there is no start before it".to_owned());
         }
+        if let Event::Mark(mark) = &event {
+            self.check_mark(mark)?;
+        }
         self.events.push(event);
+        Ok(())
+    }
+
+    /// Whether a session can have come to a mark: a replay computes up to there.
+    fn check_mark(&self, mark: &Mark) -> Result<(), String> {
+        let shown = mark.display.max(mark.oldest);
+        if shown.0 > FRAME_MAX {
+            return Err(format!("a mark where {shown} is shown, of at most {FRAME_MAX}"));
+        }
+        let most = shown.plus(self.mark_reach);
+        if mark.frame > most {
+            return Err(format!("a mark of {}, where {most} is the last there can be", mark.frame));
+        }
         Ok(())
     }
 
     /// The timeline that is being read is complete, if it has all its names.
     fn complete(&mut self) {
-        match self.building.take().filter(|building| building.names.len() == self.names) {
-            Some(first) if self.start.is_none() => self.start = Some(first),
-            Some(next) => self.events.push(Event::Restart(Box::new(next))),
-            None => {}
+        let Some(built) = self.building.take().filter(|building| building.names.len() == self.names) else {
+            return;
+        };
+        self.mark_reach = mark_reach(&built.settings);
+        if self.start.is_none() {
+            self.start = Some(built);
+        } else {
+            self.events.push(Event::Restart(Box::new(built)));
         }
     }
 
