@@ -83,12 +83,12 @@ pub use forerun_dynamics::{
     StepSettings, World,
 };
 pub use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Sphere};
-pub use forerun_geometry::{Pose, Quat, Shape, Vec3};
+pub use forerun_geometry::{Aabb, Pose, Quat, Ray, Shape, Vec3};
 pub use forerun_scene::{Scene, SceneError};
 pub use forerun_timeline::{
     BodyHit, Certainty, Change, Command, CommandError, CommandKey, ContactEvent, ContactKind,
-    ContactListener, ContactNotice, Difference, Edit, Frame, Keep, Order, Sample, Snapshot, Timeline,
-    TimelineSettings,
+    ContactListener, ContactNotice, Difference, Edit, Frame, Keep, LateEdits, ListenerSettings, Order,
+    Sample, Snapshot, Stats, Timeline, TimelineSettings, Touch,
 };
 pub use playback::{
     DriverKind, Playback, PlaybackError, PlaybackSettings, QueueRow, Report, play, write_queue_csv,

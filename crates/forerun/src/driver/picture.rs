@@ -14,7 +14,8 @@ const FULL_RATE: f64 = 1.0 - 1e-6;
 pub struct Picture {
     /// All that physics knew when the picture was taken: sample it at `time_s`.
     pub snapshot: Arc<Snapshot>,
-    /// Display time T. Seconds; never less than in the picture before, and never past the horizon.
+    /// Display time T. Seconds. Less than in the picture before only after [`Decoupled::seek`](crate::Decoupled::seek). It does not go on past the
+    /// horizon, and stands still where that comes to lie before it: when a fork that goes less far is adopted, or memory is short.
     pub time_s: f64,
     /// What T would be if physics had never been late. Seconds.
     pub wished_s: f64,

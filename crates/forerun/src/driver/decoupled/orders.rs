@@ -104,7 +104,8 @@ impl Decoupled {
     }
 
     /// Shows a fork's future from now on, with all that the physics was told since the fork was made. A fork that is too old, or has no
-    /// states for what is shown, comes back as [`Refusal::Adopt`]. Where it contradicts what is drawn, that is blended over.
+    /// states for what is shown, is dropped, and [`Refusal::Adopt`] says why: keep a clone to advance it further. Where it contradicts what is
+    /// drawn, that is blended over.
     ///
     /// # Errors
     /// As [`Decoupled::change`].
