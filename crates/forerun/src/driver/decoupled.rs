@@ -207,7 +207,7 @@ impl Decoupled {
     /// contradicts what was drawn (a command came late, one was taken back, an extrapolated body is known now), the body is led to
     /// where it is within about 0.15 s. `samples` is emptied first and keeps its memory.
     ///
-    /// To be called once for each picture, the latest; the plain truth is in [`Snapshot::sample_all`].
+    /// To be called once for each picture, the latest; the plain truth is in [`Snapshot::sample_all`](crate::Snapshot::sample_all).
     pub fn sample_all(&mut self, picture: &Picture, samples: &mut Vec<(BodyId, Sample)>) -> Blending {
         self.blend.sample_all(picture, samples)
     }
