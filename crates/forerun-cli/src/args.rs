@@ -16,7 +16,7 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Open the interactive viewer
+    /// Open the interactive viewer (not there yet)
     View(ViewArgs),
     /// Play a scene against the clock; write queue.csv, report.json and charts
     Run(RunArgs),
@@ -34,7 +34,7 @@ pub(crate) enum Command {
     Validate(ValidateArgs),
     /// Show a scene for minutes while it is edited and its physics stalls; watch the display, memory and every bit
     Soak(SoakArgs),
-    /// Write a simulation as an animated glTF file
+    /// Write a simulation as an animated glTF file (not there yet)
     Bake(BakeArgs),
 }
 

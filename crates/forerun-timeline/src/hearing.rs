@@ -14,7 +14,9 @@ use crate::{Change, Command, CommandError, CommandKey, Frame, Order};
 pub(crate) const NAMES_AHEAD: usize = 65_536;
 
 impl Timeline {
-    /// Accepts a command for a frame after the oldest. It acts when its frame is next computed: call [`Timeline::advance`]. A command to
+    /// Accepts a command for a frame after the oldest. Undo does not know of it: [`Timeline::change`] and [`Timeline::obey`] do.
+    ///
+    /// It acts when its frame is next computed: call [`Timeline::advance`]. A command to
     /// a body that is not there at that frame does nothing and is counted in [`Stats::ignored`](crate::Stats::ignored).
     ///
     /// # Errors
@@ -31,7 +33,7 @@ impl Timeline {
         Ok(())
     }
 
-    /// Takes an accepted command back, as if it had never been sent. `false` when there is none of that key that acts after the oldest
+    /// Takes an accepted command back, as if it had never been sent. Not remembered for undo: [`Timeline::obey`] does that. `false` when there is none of that key that acts after the oldest
     /// frame. The name of a body that is not added after all may only be used by that same command.
     pub fn retract(&mut self, key: &CommandKey) -> bool {
         let Some(change) = self.remove(key) else { return false };
@@ -39,7 +41,7 @@ impl Timeline {
         true
     }
 
-    /// Puts another change in the place of an accepted command.
+    /// Puts another change in the place of an accepted command. Not remembered for undo: [`Timeline::obey`] does that.
     ///
     /// # Errors
     /// [`CommandError::UnknownCommand`], or as [`Timeline::submit`]; then the old command stands.

@@ -27,7 +27,7 @@ pub enum Certainty {
     Presumed,
     /// Physics has not yet recomputed the body so far: it goes on at its last velocity for a few frames.
     Extrapolated,
-    /// Physics is late: the last state that is known, held.
+    /// Physics is late: the last state that is known, held. Or the time is forgotten: the oldest state that is kept.
     Held,
 }
 
@@ -147,9 +147,14 @@ impl Snapshot {
 
     /// The body at a time (seconds since frame 0): exactly the stored state at a frame; between two of them interpolated towards where the
     /// step leads, so that what a command does to a body is seen at the command's frame and not before; past the last one that is
-    /// known held. `None` where the body does not exist.
+    /// known, and before the oldest that is kept, held. `None` where the body does not exist, or `seconds` is no number.
+    ///
+    /// Lengths of frames are `f32`: the time of a frame is [`Frame::seconds`], which `n / 60.0` misses by a hair.
     #[must_use]
     pub fn sample(&self, body: BodyId, seconds: f64) -> Option<Sample> {
+        if seconds.is_nan() {
+            return None;
+        }
         self.sample_at(body, &self.look_at(seconds))
     }
 
@@ -209,6 +214,12 @@ impl Snapshot {
         self.moment(seconds).frame
     }
 
+    /// Whether a time is before all that is kept.
+    fn moment_before(&self, seconds: f64) -> bool {
+        let oldest_s = self.oldest().seconds(self.frame_seconds());
+        seconds < oldest_s - SAME_FRAME * oldest_s.max(1.0)
+    }
+
     /// What all samples of a time have in common.
     pub(crate) fn look_at(&self, seconds: f64) -> Look<'_> {
         let moment = self.moment(seconds);
@@ -219,6 +230,7 @@ impl Snapshot {
             next: self.tables.get(next),
             commanded: self.effects.get(&next).map(AsRef::as_ref),
             environment: self.definitions.environment(moment.frame),
+            forgotten: self.moment_before(seconds),
         }
     }
 
@@ -252,7 +264,11 @@ impl Snapshot {
         let body = self.definitions.body(id, frame)?;
         let state = look.here?.get(id)?;
         let beyond = frame > self.valid_to || (frame == self.valid_to && part > 0.0);
-        let certainty = if beyond { Certainty::Presumed } else { Certainty::Exact };
+        let certainty = match (look.forgotten, beyond) {
+            (true, _) => Certainty::Held,
+            (_, true) => Certainty::Presumed,
+            _ => Certainty::Exact,
+        };
         let next = look.arrival(id).filter(|_| part > 0.0);
         Some(match next {
             Some(next) if !stays(state, next) => {
@@ -289,6 +305,8 @@ pub(crate) struct Look<'a> {
     /// What the commands of the next frame did.
     commanded: Option<&'a FrameEffects>,
     pub(crate) environment: Environment,
+    /// Whether the time is before all that is kept: the oldest states are shown in its place.
+    forgotten: bool,
 }
 
 impl<'a> Look<'a> {

@@ -30,6 +30,7 @@ impl Timeline {
     /// As [`Timeline::advance`], with an observer of the stages of the step.
     pub fn advance_observed(&mut self, observer: &mut dyn Observer) -> Progress {
         // Here and not after the work, in which the display may have moved on.
+        self.set_display(self.display());
         self.fit_memory();
         while let Some((frame, stale)) = self.stale.pop_first() {
             let out_of_date = self.out_of_date(frame, &stale);

@@ -386,3 +386,17 @@ fn what_a_body_was_made_of_is_not_kept_when_it_is_gone_for_good() {
     let again = Change::Add { body, def: Box::new(cube(150.0, 1.0)) };
     assert_eq!(timeline.change(Frame(45), again), Err(CommandError::BodyExists(body)));
 }
+
+#[test]
+fn a_time_that_is_forgotten_is_held_and_no_number_is_no_time() {
+    let settings = TimelineSettings { lookahead: 20, past: 10, ..TimelineSettings::default() };
+    let mut timeline = Timeline::new(&far_piles(), Environment::default(), settings).unwrap();
+    timeline.set_display(Frame(100));
+    run(&mut timeline);
+    let snapshot = timeline.snapshot();
+    let certainty = |seconds: f64| snapshot.sample(BodyId(3), seconds).map(|sample| sample.certainty);
+    assert_eq!(certainty(90.0 * DT), Some(Certainty::Exact));
+    assert_eq!(certainty(89.9 * DT), Some(Certainty::Held));
+    assert_eq!(certainty(-1.0), Some(Certainty::Held));
+    assert_eq!(certainty(f64::NAN), None);
+}

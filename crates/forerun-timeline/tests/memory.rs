@@ -117,3 +117,12 @@ fn an_hour_of_rest_costs_what_a_second_does() {
     assert!(edit.affected > 5 && edit.recomputed <= 24 * 11, "{edit:?}");
     assert!(timeline.state_bytes() < bytes + 12 * 3000);
 }
+
+#[test]
+fn a_display_that_jumps_leaves_no_more_past_than_is_asked_for() {
+    let settings = TimelineSettings { lookahead: 20, past: 10, ..TimelineSettings::default() };
+    let mut timeline = timeline(&falling(40), settings);
+    timeline.set_display(Frame(300));
+    run(&mut timeline);
+    assert_eq!((timeline.oldest(), timeline.horizon()), (Frame(290), Frame(320)));
+}

@@ -160,6 +160,9 @@ fn obey(timeline: &mut Timeline, order: &Order) -> Result<(), CommandError> {
 /// # }
 /// ```
 ///
+/// Recorded contacts are no part of it: they are found again when it is loaded, but for those of the oldest frame, so that what touches there
+/// begins to touch at the next.
+///
 /// # Errors
 /// When the file cannot be written.
 pub fn save_timeline(timeline: &Timeline, path: impl AsRef<Path>, keep: Keep) -> Result<(), RecordingError> {

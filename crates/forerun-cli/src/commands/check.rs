@@ -210,10 +210,16 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
         "  the edits changed {affected} states; {recomputed} were computed for it, {:.2} for each; full re-simulations: {full}",
         verdict.computed_per_affected
     ))?;
-    print(&format!(
-        "  an edit was {:.1} times cheaper than a full re-simulation of the same frames (median; the least {:.2})",
-        verdict.speed_up_median, verdict.speed_up_min
-    ))?;
+    if *affected == 0 {
+        print("  no edit changed anything: this shows little; try more --edits, or another --seed")?;
+    } else {
+        print(&format!(
+            "  an edit took {:.4} of the time of a full re-simulation of the same frames (median: {:.1} times cheaper; the dearest {:.2})",
+            1.0 / verdict.speed_up_median.max(1e-9),
+            verdict.speed_up_median,
+            1.0 / verdict.speed_up_min.max(1e-9)
+        ))?;
+    }
     for (what, ms) in [("edit", edit_ms), ("full re-simulation", full_ms)] {
         print(&format!(
             "  ms per {what:<18} {:>10.3} mean {:>10.3} median {:>10.3} max",

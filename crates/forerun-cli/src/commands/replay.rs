@@ -3,7 +3,7 @@
 use std::num::NonZeroU16;
 use std::path::Path;
 
-use forerun::recording::{Event, Recording, Replay};
+use forerun::recording::{Event, Recording, RecordingFault, Replay};
 use forerun::{RecordingError, Threads};
 use serde::Serialize;
 
@@ -133,7 +133,14 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
 }
 
 fn recover(file: &Path, out: &Path, json: bool) -> Result<(), Failure> {
-    let recovered = Recording::recover(file)?;
+    let recovered = Recording::recover(file).map_err(|error| match error.fault {
+        RecordingFault::Cut | RecordingFault::Corrupt(_) => Failure::Input(format!(
+            "{}: nothing can be recovered: the damage at byte {} is in the start, which has the bodies",
+            file.display(),
+            error.offset
+        )),
+        _ => error.into(),
+    })?;
     recovered.recording.write(out)?;
     let events = &recovered.recording.events;
     let orders = events.iter().filter(|event| matches!(event, Event::Order(_))).count();

@@ -223,7 +223,11 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
         format!("{}, {} MiB", mib(verdict.states_end_mib), mib(verdict.states_slope_mib_per_min)),
     )?;
     line("frames compared with a full run", verdict.frames_compared.to_string())?;
-    line("states that differ", verdict.mismatches.to_string())
+    line("states that differ", verdict.mismatches.to_string())?;
+    print(&match verdict.failed.as_slice() {
+        [] => "  all of it holds".to_owned(),
+        failed => format!("  FAILED: {}", failed.join("; ")),
+    })
 }
 
 #[cfg(test)]
