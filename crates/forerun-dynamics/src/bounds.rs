@@ -11,12 +11,19 @@ use crate::{Body, BodyKind, BodyState, Environment};
 /// How much further than its velocity says a body is expected to move.
 const MOTION_FACTOR: f32 = 1.2;
 
-/// The box that holds the body during the whole frame, contact margin included.
+/// Nobody looks farther ahead than this along an axis (metres), or so many radii of the body: else a velocity beyond all measure, given to all bodies of a
+/// large scene, makes everybody a neighbour of everybody, and memory runs out. 20 m in a frame are 1200 m/s.
+const REACH_MAX_M: f32 = 20.0;
+const REACH_MAX_RADII: f32 = 16.0;
+
+/// The box that holds the body during the whole frame, contact margin included. What goes farther than 20 m, or 16 of its radii, in a frame may leave it, and
+/// pass through what lies beyond.
 #[must_use]
 pub fn swept_bound(body: &Body, state: &BodyState, environment: &Environment) -> Aabb {
     let now = body.shape.aabb(&body.own_pose(state));
     let reach = 0.5 * environment.settings.contact_margin_m + spin_reach(body, state, environment);
-    let step = frame_motion(body, state, environment) * MOTION_FACTOR;
+    let limit = Vec3::splat(REACH_MAX_M.max(REACH_MAX_RADII * body.radius));
+    let step = (frame_motion(body, state, environment) * MOTION_FACTOR).clamp(-limit, limit);
     Aabb {
         min: now.min + step.min(Vec3::ZERO) - Vec3::splat(reach),
         max: now.max + step.max(Vec3::ZERO) + Vec3::splat(reach),

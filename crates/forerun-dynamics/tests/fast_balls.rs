@@ -105,3 +105,15 @@ fn slices_end_with_the_motion() {
     assert!(counts[moved_last + 60..].iter().all(|&count| count == 1), "slices go on after the motion");
     assert_eq!(escaped(&world), 0, "bodies are outside");
 }
+
+/// Gravity of 10^7 m/s² on everybody in a large scene must not make everybody a neighbour of everybody.
+#[test]
+fn a_speed_beyond_all_measure_makes_nobody_a_far_neighbour() {
+    let mut environment = forerun_dynamics::Environment::default();
+    environment.gravity.y = -1e7;
+    let ball = Shape::Sphere(forerun_geometry::shape::Sphere { radius: 0.1 });
+    let (body, state) = forerun_dynamics::Body::new(&BodyDef::new(ball)).unwrap();
+    let bound = forerun_dynamics::bounds::swept_bound(&body, &state, &environment);
+    let size = bound.max - bound.min;
+    assert!(size.y > 19.0 && size.y < 21.0 && size.x < 1.0, "{size}");
+}
