@@ -4,22 +4,22 @@
 
 use forerun_geometry::{Shape, Vec3};
 
-use super::blocks::{Block, arrange};
+use super::arrange::{Arranger, Order};
 use super::bodies::Bodies;
-use super::collisions::{Moving, resolve_collisions};
+use super::collisions::Moving;
 use super::contact_graph::ContactGraph;
-use super::impulses::{ImpulseSums, add_substep};
+use super::energy_guard::{EnergyGuard, Guarded};
+use super::impulses::ImpulseSums;
 use super::islands::Islands;
 use super::load::{Load, LoadPass, Strain};
+use super::manifolds::Source;
 use super::positions::moved;
-use super::prepare::{Source, prepare};
+use super::prepare::{Common, prepare};
 use super::rest::{IslandsAt, endings, settle};
-use super::shock::{propagate_classic, propagate_shock};
+use super::rows::{OnlyHard, Rows};
 use super::standing::StandingPass;
-use super::sweep::{relax, sweep};
+use super::substep::{displace, fall, note_pushes};
 use super::velocities::integrate_velocities;
-use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
-use crate::lanes::{Portable, Row};
 use crate::narrow_phase::Contact;
 use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
 
@@ -44,9 +44,8 @@ pub(crate) struct Batch<'a> {
     dynamic: Vec<bool>,
     islands: Islands,
     graph: ContactGraph,
-    /// First those of easy islands, then those of hard ones.
-    blocks: Vec<Block<Portable>>,
-    easy_blocks: usize,
+    rows: Rows,
+    guard: EnergyGuard,
     spins: Vec<Vec3>,
     bounces: bool,
 }
@@ -71,8 +70,8 @@ impl<'a> Batch<'a> {
             dynamic,
             islands,
             graph: ContactGraph::default(),
-            blocks: Vec::new(),
-            easy_blocks: 0,
+            rows: Rows::default(),
+            guard: EnergyGuard::default(),
             spins: Vec::new(),
             bounces,
         }
@@ -96,26 +95,58 @@ impl<'a> Batch<'a> {
 
     /// Stage 3: levels, load, rows.
     pub(crate) fn build_contact_graph(&mut self) {
-        let dynamic = &self.dynamic;
         self.graph = ContactGraph::build(&self.members, &self.contacts);
         let (loads, strains) = self.loads();
         let hard = self.hard(&strains);
-        let is_hard = |k: &u32| hard[self.island_of(&self.contacts[*k as usize])];
-        let (hard, easy): (Vec<u32>, Vec<u32>) = (0..self.contacts.len() as u32).partition(is_hard);
-        self.blocks = arrange(&easy, dynamic, &self.graph, &self.contacts);
-        self.easy_blocks = self.blocks.len();
-        self.blocks.append(&mut arrange(&hard, dynamic, &self.graph, &self.contacts));
+        self.arrange(&hard);
         let levels: Vec<u32> = (0..self.members.len()).map(|i| self.graph.level(i)).collect();
         let gravity = self.environment.gravity;
-        let source = Source {
-            members: &self.members,
-            contacts: &self.contacts,
-            loads: &loads,
-            levels: &levels,
+        let source = Source { contacts: &self.contacts, loads: &loads, levels: &levels };
+        let common = Common {
             up: if gravity == Vec3::ZERO { Vec3::ZERO } else { -gravity.normalize() },
             shock_yield: self.environment.settings.shock_yield,
+            substep_seconds: self.substep_seconds(),
         };
-        prepare(&mut self.blocks, &self.bodies, &source);
+        let Rows { flat, uneven } = &mut self.rows;
+        prepare(&mut flat.blocks, &mut flat.details, &self.bodies, &source, &common);
+        prepare(&mut uneven.blocks, &mut uneven.details, &self.bodies, &source, &common);
+    }
+
+    /// Finds a lane for every contact: flat islands apart from uneven ones, easy ones before hard ones.
+    fn arrange(&mut self, hard: &[bool]) {
+        let uneven = self.uneven();
+        let mut chosen: [Vec<u32>; 4] = Default::default();
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let root = self.island_of(contact);
+            chosen[2 * usize::from(uneven[root]) + usize::from(hard[root])].push(k as u32);
+        }
+        let order = Order { graph: &self.graph, contacts: &self.contacts, yields: &self.dynamic };
+        let mut arranger = Arranger::default();
+        arranger.begin(self.members.len());
+        let Rows { flat, uneven } = &mut self.rows;
+        let [flat_easy, flat_hard, uneven_easy, uneven_hard] = &chosen;
+        flat.clear();
+        arranger.add(flat_easy, &order, flat);
+        flat.easy = flat.count;
+        arranger.add(flat_hard, &order, flat);
+        flat.finish();
+        uneven.clear();
+        arranger.add(uneven_easy, &order, uneven);
+        uneven.easy = uneven.count;
+        arranger.add(uneven_hard, &order, uneven);
+        uneven.finish();
+    }
+
+    /// Per island root: whether some manifold has points that push different ways. Only those of meshes do.
+    fn uneven(&self) -> Vec<bool> {
+        let mut uneven = vec![false; self.members.len()];
+        if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
+            for contact in &self.contacts {
+                let points = &contact.manifold.points[..contact.manifold.count as usize];
+                uneven[self.island_of(contact)] |= points.iter().any(|p| p.normal != points[0].normal);
+            }
+        }
+        uneven
     }
 
     /// The root of the island that a contact belongs to.
@@ -148,49 +179,49 @@ impl<'a> Batch<'a> {
 
     /// Stage 4: substeps of bounces, gravity, warm start and sweeps.
     pub(crate) fn resolve_contacts(&mut self) {
-        let h = self.substep_seconds();
         let settings = self.environment.settings;
+        let h = self.substep_seconds();
         let driven = self.driven();
-        let guard = EnergyGuard { islands: &self.islands, dynamic: &self.dynamic, driven: &driven };
-        let mut kicks: Vec<Row> = self.bodies.accelerations.iter().map(|a| Row(a.0.map(|x| x * h))).collect();
-        kicks.push(Row::default());
-        let mut before = Vec::new();
-        let (blocks, bodies, impulses) = (&mut self.blocks, &mut self.bodies, &mut self.impulses);
-        let standing = StandingPass {
-            guard: &guard,
-            kicks: &kicks,
-            displacements: &bodies.displacements,
-            substep_seconds: h,
-            sweeps: settings.first_sweeps_hard,
-        };
-        standing.run(&mut blocks[self.easy_blocks..]);
+        self.guard.begin(&self.islands, &self.dynamic, &driven);
+        self.stand();
+        let (rows, bodies, impulses) = (&mut self.rows, &mut self.bodies, &mut self.impulses);
         for substep in 0..settings.substeps {
             if self.bounces {
-                resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings, impulses));
-            }
-            for (velocity, kick) in bodies.velocities.iter_mut().zip(&kicks) {
-                for k in 0..6 {
-                    velocity.0[k] += kick.0[k];
-                }
+                rows.resolve_collisions(&mut moving(bodies, &settings, impulses));
             }
             if substep == 1 {
-                remove_momentum(blocks);
+                rows.remove_momentum(&mut bodies.pushes);
             }
-            before.clone_from(&bodies.velocities);
-            apply_impulses(blocks, &mut bodies.velocities);
+            fall(bodies);
+            if substep == 0 {
+                rows.apply_impulses(&mut bodies.velocities);
+            }
             let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
-            guard.check(blocks, &before, &mut bodies.velocities, guess);
+            keep_energy(&mut self.guard, rows, bodies, guess);
             for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
-                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
+                rows.sweep(&mut bodies.velocities);
             }
-            guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
-            displace(bodies, &before, &kicks, h);
-            relax(blocks, &mut moving(bodies, &kicks, &settings, &mut []), self.bounces);
-            add_substep(impulses, blocks);
+            keep_energy(&mut self.guard, rows, bodies, Guarded::Result);
+            displace(bodies, h);
+            rows.relax(&mut moving(bodies, &settings, &mut []), self.bounces);
+            note_pushes(bodies);
+            rows.add_impulses(impulses);
             if settings.shock_propagation == ShockPropagation::Classic {
-                propagate_classic(blocks, &mut bodies.velocities, &bodies.displacements, h);
+                rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
             }
         }
+    }
+
+    /// Betters the first guess of hard islands.
+    fn stand(&mut self) {
+        let mut standing = StandingPass {
+            guard: &mut self.guard,
+            kicks: &self.bodies.kicks,
+            sweeps: self.environment.settings.first_sweeps_hard,
+        };
+        let Rows { flat, uneven } = &mut self.rows;
+        standing.run(&mut flat.blocks[flat.easy..], &mut flat.details[flat.easy..]);
+        standing.run(&mut uneven.blocks[uneven.easy..], &mut uneven.details[uneven.easy..]);
     }
 
     /// Islands that a moving kinematic body touches.
@@ -211,13 +242,11 @@ impl<'a> Batch<'a> {
     /// Stage 5: remaining overlap is pushed out, level by level.
     pub(crate) fn propagate_shock(&mut self) {
         let settings = self.environment.settings;
-        let push_max = settings.recovery_speed_max * settings.frame_seconds;
         for _ in 0..self.pushes() {
-            propagate_shock(&mut self.blocks, &mut self.bodies.displacements, &settings, push_max);
+            self.rows.propagate_shock(OnlyHard::No, &mut self.bodies.displacements, &settings);
         }
-        let hard = &mut self.blocks[self.easy_blocks..];
         for _ in 0..HARD_PUSHES {
-            propagate_shock(hard, &mut self.bodies.displacements, &settings, push_max);
+            self.rows.propagate_shock(OnlyHard::Yes, &mut self.bodies.displacements, &settings);
         }
     }
 
@@ -240,11 +269,7 @@ impl<'a> Batch<'a> {
     /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
     pub(crate) fn overlap_growth(&self) -> Vec<f32> {
         let mut growth = vec![0.0; self.contacts.len()];
-        for block in &self.blocks {
-            for (contact, deeper) in block.overlap_growth(&self.bodies.displacements) {
-                growth[contact] = deeper;
-            }
-        }
+        self.rows.overlap_growth(&self.bodies.displacements, &mut growth);
         growth
     }
 }
@@ -255,30 +280,21 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
 }
 
 /// What the kernels that look ahead need of the bodies.
-fn moving<'a>(
-    bodies: &'a mut Bodies,
-    kicks: &'a [Row],
-    settings: &StepSettings,
-    bounced: &'a mut [[f32; 4]],
-) -> Moving<'a> {
+fn moving<'a>(bodies: &'a mut Bodies, settings: &StepSettings, bounced: &'a mut [[f32; 4]]) -> Moving<'a> {
     Moving {
         velocities: &mut bodies.velocities,
         displacements: &bodies.displacements,
-        kicks,
+        kicks: &bodies.kicks,
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
         bounced,
     }
 }
 
-/// Moves the bodies by their velocities for one substep. A body that no impulse reached flies its parabola; one that was pushed moves as the
-/// contacts were solved, with its new velocity.
-fn displace(bodies: &mut Bodies, before: &[Row], kicks: &[Row], h: f32) {
-    let rows = bodies.displacements.iter_mut().zip(&bodies.velocities).zip(before.iter().zip(kicks));
-    for ((displacement, velocity), (free, kick)) in rows {
-        let flies = if velocity == free { 0.5 } else { 0.0 };
-        for k in 0..6 {
-            displacement.0[k] += h * (velocity.0[k] - flies * kick.0[k]);
-        }
+/// Scales back what impulses have added, where it is energy.
+fn keep_energy(guard: &mut EnergyGuard, rows: &mut Rows, bodies: &mut Bodies, what: Guarded) {
+    if guard.gains(&bodies.free, &bodies.velocities, what) {
+        guard.scale_back(&bodies.free, &mut bodies.velocities);
+        rows.scale_impulses(guard, what);
     }
 }
