@@ -22,6 +22,7 @@ mod shock;
 mod spring;
 mod standing;
 mod sweep;
+mod team;
 mod velocities;
 mod warm_start;
 
