@@ -14,7 +14,9 @@ pub mod lanes;
 pub mod meter;
 pub mod narrow_phase;
 mod plan;
+mod scratch;
 pub mod settings;
+mod slices;
 mod solver;
 pub mod stage;
 pub mod state;
@@ -24,6 +26,7 @@ pub mod world;
 
 pub use body::{Body, BodyId, BodyKind, Material, Spring};
 pub use body_def::{BodyDef, BodyError, Mass};
+pub use scratch::StepScratch;
 pub use settings::{Environment, EnvironmentError, ShockPropagation, StepSettings};
 pub use stage::{Observer, Stage, Unobserved};
 pub use state::BodyState;

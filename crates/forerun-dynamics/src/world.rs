@@ -2,6 +2,7 @@
 
 use crate::broad_phase::{Bound, overlapping_pairs};
 use crate::narrow_phase::find_contacts;
+use crate::scratch::StepScratch;
 use crate::step::{Group, Member, StepReport, advance_islands};
 use crate::{
     Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches, bounds,
@@ -12,6 +13,7 @@ use crate::{
 pub struct World {
     bodies: Vec<Body>,
     states: Vec<BodyState>,
+    scratch: StepScratch,
     /// Gravity and settings. While [`Environment::check`] refuses them, [`World::step`] moves nothing.
     pub environment: Environment,
 }
@@ -20,7 +22,7 @@ impl World {
     /// An empty world.
     #[must_use]
     pub fn new(environment: Environment) -> Self {
-        World { bodies: Vec::new(), states: Vec::new(), environment }
+        World { environment, ..World::default() }
     }
 
     /// Adds a body.
@@ -92,8 +94,8 @@ impl World {
         let contacts = find_contacts(&members, &pairs, &self.environment);
         observer.after(Stage::Collisions);
         let group = Group { members: &members, pairs: &pairs, contacts: &contacts };
-        let (next, report) = advance_islands(&group, &self.environment, observer, touches);
-        self.states = next;
+        let report = advance_islands(&group, &self.environment, observer, (touches, &mut self.scratch));
+        std::mem::swap(&mut self.states, &mut self.scratch.next);
         report
     }
 
