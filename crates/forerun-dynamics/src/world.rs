@@ -1,11 +1,8 @@
 //! World: bodies and one state each, for those who want no timeline.
 
-use crate::broad_phase::{Bound, overlapping_pairs};
-use crate::narrow_phase::find_contacts;
+use crate::detection::Detection;
 use crate::step::{Group, Member, StepReport, advance_islands};
-use crate::{
-    Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches, bounds,
-};
+use crate::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches};
 
 /// Bodies at one frame.
 #[derive(Clone, Debug, Default)]
@@ -81,17 +78,10 @@ impl World {
         let members: Vec<Member> = (self.bodies.iter().zip(&self.states).enumerate())
             .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state })
             .collect();
-        let bounds: Vec<Bound> = members
-            .iter()
-            .map(|m| Bound {
-                aabb: bounds::swept_bound(m.body, &m.state, &self.environment),
-                dynamic: m.body.is_dynamic(),
-            })
-            .collect();
-        let pairs = overlapping_pairs(&bounds);
-        let contacts = find_contacts(&members, &pairs, &self.environment);
+        let mut detection = Detection::default();
+        detection.run(&members, &self.environment);
         observer.after(Stage::Collisions);
-        let group = Group { members: &members, pairs: &pairs, contacts: &contacts };
+        let group = Group { members: &members, pairs: &detection.pairs, contacts: &detection.contacts };
         let (next, report) = advance_islands(&group, &self.environment, observer, touches);
         self.states = next;
         report
