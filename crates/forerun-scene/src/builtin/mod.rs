@@ -2,6 +2,7 @@
 //!
 //! Sizes, distances and speeds are those of the published cases that each scene names, so that figures can be put side by side.
 
+mod balls;
 mod dissertation;
 mod flying;
 mod groups;
@@ -10,6 +11,7 @@ mod parts;
 mod piles;
 mod sliding;
 mod structures;
+mod towers;
 
 use crate::error::{Fault, SceneError};
 use crate::scene::Scene;
@@ -77,6 +79,7 @@ static BUILT_INS: &[BuiltIn] = &[
     sized("rain", (1000, 100_000, "bodies"), "Balls, boxes and capsules fall into a pit", piles::rain),
     sized("rings", (500, 5000, "rings"), "Rings fall over 25 poles", piles::rings),
     sized("tori", (50, 10_000, "rings"), "Rings of 1536 triangles fall on a heap", piles::tori),
+    sized("convex_pile", (5120, 100_000, "rocks"), "A column of rocks collapses", piles::convex_pile),
     sized("domino_lines", (40, 1000, "lines"), "Lines of 25 dominoes that never meet", groups::domino_lines),
     sized("walls", (20, 1000, "piles"), "Piles with thin walls between them", groups::walls),
     sized("break", (4, 50, "rows of balls"), "A break on a billiard table", groups::billiard_break),
@@ -95,6 +98,28 @@ static BUILT_INS: &[BuiltIn] = &[
     single("arch", "An arch of 17 wedges that carries 4 boxes", structures::arch),
     single("plank", "A plank over an edge becomes a catapult", structures::plank),
     sized("kapla", (6, 100, "floors"), "A tower of loose blocks, 17 a floor", structures::kapla),
+    sized("tower", (40, 1000, "cubes"), "A tower of cubes that touch", towers::tower),
+    sized(
+        "falling_tower",
+        (40, 1000, "cubes"),
+        "A tower of cubes that falls together",
+        towers::falling_tower,
+    ),
+    sized("jenga", (30, 1000, "layers"), "A tower of planks laid crosswise", towers::jenga),
+    sized(
+        "tiny_pyramid",
+        (30, 500, "cubes in the lowest row"),
+        "A pyramid of 5 cm cubes",
+        towers::tiny_pyramid,
+    ),
+    sized("card_house", (5, 50, "levels"), "A house of cards", towers::card_house),
+    sized("ball_cube", (6, 40, "balls along an edge"), "A cube of balls falls apart", balls::cube_collapses),
+    sized(
+        "elastic_ball_cube",
+        (6, 40, "balls along an edge"),
+        "A cube of elastic balls falls apart",
+        balls::cube_bounces,
+    ),
     single("a01a", "Slope: a block slides 0.624 m and stops", sliding::a01a),
     single("a01b", "Slope: a block slides faster and faster", sliding::a01b),
     single("a01c", "Level: three blocks slide equally far", sliding::a01c),
