@@ -11,7 +11,7 @@ pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
 pub mod detection;
-mod lanes;
+pub mod lanes;
 pub mod meter;
 pub mod narrow_phase;
 mod plan;
