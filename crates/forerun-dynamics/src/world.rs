@@ -2,7 +2,7 @@
 
 use crate::broad_phase::{Bound, overlapping_pairs};
 use crate::narrow_phase::find_contacts;
-use crate::scratch::StepScratch;
+use crate::scratch::{StepScratch, emptied};
 use crate::step::{Group, Member, StepReport, advance_islands};
 use crate::{
     Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches, bounds,
@@ -80,9 +80,11 @@ impl World {
         if self.environment.check().is_err() {
             return StepReport::default();
         }
-        let members: Vec<Member> = (self.bodies.iter().zip(&self.states).enumerate())
-            .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state })
-            .collect();
+        let mut members: Vec<Member> = std::mem::take(&mut self.scratch.members);
+        members.extend(
+            (self.bodies.iter().zip(&self.states).enumerate())
+                .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state }),
+        );
         let bounds: Vec<Bound> = members
             .iter()
             .map(|m| Bound {
@@ -95,6 +97,7 @@ impl World {
         observer.after(Stage::Collisions);
         let group = Group { members: &members, pairs: &pairs, contacts: &contacts };
         let report = advance_islands(&group, &self.environment, observer, (touches, &mut self.scratch));
+        self.scratch.members = emptied(members);
         std::mem::swap(&mut self.states, &mut self.scratch.next);
         report
     }
