@@ -16,6 +16,9 @@ use crate::{Body, BodyState, Environment, Observer, Stage};
 /// An overlap that grows by less than this is never too deep. Metres.
 const DEEP_M: f32 = 0.001;
 
+/// Batches that go through the stages together, for each of several threads.
+const BATCHES_PER_THREAD: usize = 4;
+
 /// Memory for batches.
 #[derive(Debug, Default)]
 pub(crate) struct SliceScratch {
@@ -65,7 +68,7 @@ impl<'a> Slicer<'a> {
     pub(crate) fn run(&self, chosen: &mut [u32], run: &mut Run, scratch: &mut SliceScratch) {
         pack(self.plan, chosen, &mut scratch.packed);
         let mut batches: Vec<Batch> = std::mem::take(&mut scratch.batches);
-        let needed = if self.count == 1 { scratch.packed.len().min(std::env::var("WAVE").map_or(4, |w| w.parse().unwrap())) } else { scratch.packed.len() };
+        let needed = if self.count == 1 { scratch.packed.len().min(wave()) } else { scratch.packed.len() };
         batches.resize_with(needed.max(batches.len()), Batch::default);
         if self.count == 1 {
             batches = self.whole(chosen, &scratch.packed, batches, run);
@@ -92,8 +95,7 @@ impl<'a> Slicer<'a> {
         'a: 'b,
     {
         let notes = run.notes.is_some();
-        let wave: usize = std::env::var("WAVE").map_or(4, |w| w.parse().unwrap());
-        for packed in packed.chunks(wave) {
+        for packed in packed.chunks(wave()) {
             let used = &mut batches[..packed.len()];
             each(used, |(k, batch)| {
                 self.gather(&chosen[packed[k].clone()], batch);
@@ -319,6 +321,15 @@ fn solve(batches: &mut [Batch], observer: &mut dyn Observer) {
 
     each(batches, |(_, batch)| batch.integrate_positions());
     observer.after(Stage::Positions);
+}
+
+/// How many batches go through the stages together: few, so that what one stage writes is still near when the next reads it; enough to share out.
+/// Batches do not notice each other, so this changes no bits.
+fn wave() -> usize {
+    match rayon::current_num_threads() {
+        1 => 1,
+        threads => BATCHES_PER_THREAD * threads,
+    }
 }
 
 /// Does something to each batch, side by side; to a single one without waking another thread.

@@ -116,9 +116,7 @@ pub(crate) fn advance_islands(
             report.slices_max = count;
             let notes = ledger.is_some().then(Ledger::default);
             let mut run = Run { observer: &mut *observer, next, notes, too_deep: Vec::new() };
-            if std::env::var("DBG").is_ok() { eprintln!("count {count} islands {} of {} contacts {:?} members {}", chosen.len(), plan.islands.len(), chosen.iter().map(|&i| plan.contacts(i).len()).max(), chosen.iter().map(|&i| plan.members(i).len()).max().unwrap()); }
             Slicer { group, environment, plan, count }.run(chosen, &mut run, slices);
-            if std::env::var("DBG").is_ok() { eprintln!("   too deep {}", run.too_deep.len()); }
             if let (Some(ledger), Some(notes)) = (&mut ledger, run.notes) {
                 ledger.keep(notes, &run.too_deep);
             }

@@ -81,10 +81,11 @@ impl World {
             return StepReport::default();
         }
         let mut members: Vec<Member> = std::mem::take(&mut self.scratch.members);
-        members.extend(
-            (self.bodies.iter().zip(&self.states).enumerate())
-                .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state }),
-        );
+        members.extend((self.bodies.iter().zip(&self.states).enumerate()).map(|(i, (body, state))| Member {
+            id: BodyId(i as u32),
+            body,
+            state: *state,
+        }));
         let bounds: Vec<Bound> = members
             .iter()
             .map(|m| Bound {
