@@ -5,7 +5,7 @@
 
 use super::batch::Ends;
 use super::contact_graph::ContactGraph;
-use crate::lanes::{LANES, Lanes, Portable, V8};
+use crate::lanes::{LANES, Lanes, Portable, Record, V8};
 
 /// Padding: a lane without a contact.
 pub(crate) const NO_CONTACT: u32 = u32::MAX;
@@ -95,6 +95,15 @@ pub(crate) struct Block<F> {
     pub(crate) restitution: F,
     /// The part of the first guess that is momentum: it is taken off before the second substep.
     pub(crate) momentum: Impulses<F>,
+}
+
+/// Blocks, in whatever form their numbers are.
+pub(crate) struct Contacts;
+
+// SAFETY: a block is repr(C), of numbers and indices.
+#[allow(unsafe_code, reason = "says of the layout what kernels rely on")]
+unsafe impl Record for Contacts {
+    type Of<F: Lanes> = Block<F>;
 }
 
 impl<F: Lanes> Block<F> {

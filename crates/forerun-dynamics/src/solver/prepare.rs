@@ -2,11 +2,11 @@
 
 use forerun_geometry::Vec3;
 
-use super::batch::Contacts;
-use super::blocks::{Block, CentreRow, FrictionRows, NO_CONTACT, PointRow};
+use super::batch::ContactList;
+use super::blocks::{Block, CentreRow, Contacts, FrictionRows, NO_CONTACT, PointRow};
 use super::bodies::Bodies;
 use super::load::Load;
-use crate::lanes::{LANES, LaneMask, Lanes, V8, dispatched};
+use crate::lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched, recast};
 use crate::{Material, Member};
 
 const TINY: f32 = 1e-12;
@@ -22,7 +22,7 @@ const RISE_MIN: f32 = 0.2;
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     pub(crate) members: &'a [Member<'a>],
-    pub(crate) contacts: Contacts<'a>,
+    pub(crate) contacts: ContactList<'a>,
     pub(crate) loads: &'a [Load],
     pub(crate) levels: &'a [u32],
     pub(crate) up: Vec3,
@@ -47,11 +47,12 @@ struct Arrays {
 
 dispatched! {
     /// Fills the rows of blocks whose indices are set.
-    pub(crate) fn prepare(blocks: &mut [Block], bodies: &Bodies, source: &Source) => prepare_lanes
+    pub(crate) fn prepare(blocks: &mut [Block<Portable>], bodies: &Bodies, source: &Source) => prepare_lanes
 }
 
 #[inline(always)]
-fn prepare_lanes<F: Lanes>(blocks: &mut [Block<F>], bodies: &Bodies, source: &Source) {
+fn prepare_lanes<F: Lanes>(blocks: &mut [Block<Portable>], bodies: &Bodies, source: &Source) {
+    let blocks = recast::<F, Contacts>(blocks);
     for block in blocks {
         let lanes = load_lanes(block, source);
         fill(block, &lanes, bodies, source.up);
