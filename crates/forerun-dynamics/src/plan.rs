@@ -163,28 +163,15 @@ impl Plan {
         if of_first == Plan::NONE { self.island_of[b as usize] } else { of_first }
     }
 
-    /// The pairs inside the wanted islands, or between them and bodies that do not yield: where a slice looks for contacts. Of each pair the island,
-    /// by island, in the order of the pairs.
-    pub(crate) fn pairs_of(&self, wanted: &[u32], group: &Group) -> Vec<(u32, (u32, u32))> {
-        let mut is_wanted = vec![false; self.islands.len()];
-        for &island in wanted {
-            is_wanted[island as usize] = true;
+    /// The island that a pair of members is inside of, or between and bodies that do not yield: it is where a slice of it looks for contacts.
+    pub(crate) fn island_between(&self, i: u32, j: u32) -> u32 {
+        let (a, b) = (self.island_of[i as usize], self.island_of[j as usize]);
+        match (self.traits[i as usize].dynamic, self.traits[j as usize].dynamic) {
+            (true, true) if a == b => a,
+            (true, false) => a,
+            (false, true) => b,
+            _ => Plan::NONE,
         }
-        let mut pairs: Vec<(u32, (u32, u32))> = Vec::new();
-        for &(i, j) in group.pairs {
-            let (a, b) = (self.island_of[i as usize], self.island_of[j as usize]);
-            let island = match (self.traits[i as usize].dynamic, self.traits[j as usize].dynamic) {
-                (true, true) if a == b => a,
-                (true, false) => a,
-                (false, true) => b,
-                _ => Plan::NONE,
-            };
-            if island != Plan::NONE && is_wanted[island as usize] {
-                pairs.push((island, (i, j)));
-            }
-        }
-        pairs.sort_by_key(|(island, _)| *island);
-        pairs
     }
 
     /// Members of islands that are at a fixpoint: every dynamic one has been at rest with all of its island for a frame, and nothing moves into it.

@@ -12,6 +12,8 @@ use crate::{BodyState, Member};
 pub struct StepScratch {
     pub(crate) plan: Plan,
     pub(crate) slices: SliceScratch,
+    /// Empty.
+    pub(crate) members: Vec<Member<'static>>,
     /// The states that the last step gave.
     pub(crate) next: Vec<BodyState>,
     /// By island: how many slices its frame is cut into.

@@ -16,6 +16,9 @@ use crate::{Body, BodyState, Environment, Observer, Stage};
 /// An overlap that grows by less than this is never too deep. Metres.
 const DEEP_M: f32 = 0.001;
 
+/// Batches that go through the stages together, for each of several threads.
+const BATCHES_PER_THREAD: usize = 4;
+
 /// Memory for batches.
 #[derive(Debug, Default)]
 pub(crate) struct SliceScratch {
@@ -44,12 +47,17 @@ pub(crate) struct Run<'a> {
 
 /// What a batch is made from, slice after slice.
 struct Part<'a> {
-    /// At the start of the slice.
+    /// At the start of the slice. Sorted by id.
     members: Vec<Member<'a>>,
+    /// Indices of the members in the group.
     sources: Vec<u32>,
-    /// How many of the members yield; they come first.
+    /// Indices of the members, those that yield first: the batch's order.
+    order: Vec<u32>,
+    /// How many of the members yield.
     dynamic: usize,
-    /// Indices into the members, in the order of the bodies.
+    /// By member: its place in that order.
+    place: Vec<u32>,
+    /// Pairs of members, sorted.
     pairs: Vec<(u32, u32)>,
     /// Where each member may be in this frame: nobody looked for contacts elsewhere.
     reach: Vec<Aabb>,
@@ -60,30 +68,18 @@ impl<'a> Slicer<'a> {
     pub(crate) fn run(&self, chosen: &mut [u32], run: &mut Run, scratch: &mut SliceScratch) {
         pack(self.plan, chosen, &mut scratch.packed);
         let mut batches: Vec<Batch> = std::mem::take(&mut scratch.batches);
-        batches.resize_with(scratch.packed.len().max(batches.len()), Batch::default);
+        let needed = if self.count == 1 { scratch.packed.len().min(wave()) } else { scratch.packed.len() };
+        batches.resize_with(needed.max(batches.len()), Batch::default);
         if self.count == 1 {
             batches = self.whole(chosen, &scratch.packed, batches, run);
         } else {
-            let wanted: &[u32] = chosen;
-            let mut pairs = self.plan.pairs_of(wanted, self.group);
-            // As the chosen islands are sorted: meshes last.
-            let is_mesh = |island: u32| self.plan.islands[island as usize].mesh;
-            pairs.sort_by_key(|(island, _)| is_mesh(*island));
-            let mut rest = pairs.as_slice();
-            let mut parts: Vec<Part> = Vec::with_capacity(scratch.packed.len());
-            for range in &scratch.packed {
-                let last = wanted[range.end - 1];
-                let sorts_behind = |island: u32| (is_mesh(island), island) > (is_mesh(last), last);
-                let (here, after) = rest.split_at(rest.partition_point(|(island, _)| !sorts_behind(*island)));
-                parts.push(self.part(&wanted[range.clone()], here));
-                rest = after;
-            }
+            let mut parts = self.parts(chosen, &scratch.packed);
             for slice in 0..self.count {
                 batches = self.slice(&mut parts, slice + 1 == self.count, batches, run);
             }
-            run.too_deep.sort_unstable();
-            run.too_deep.dedup();
         }
+        run.too_deep.sort_unstable();
+        run.too_deep.dedup();
         scratch.batches = batches.into_iter().map(Batch::emptied).collect();
     }
 
@@ -99,19 +95,21 @@ impl<'a> Slicer<'a> {
         'a: 'b,
     {
         let notes = run.notes.is_some();
-        let used = &mut batches[..packed.len()];
-        used.par_iter_mut().zip(packed).for_each(|(batch, range)| {
-            self.gather(&chosen[range.clone()], batch);
-            batch.start(self.environment, self.group.contacts);
-            if notes {
-                batch.record_impulses();
+        for packed in packed.chunks(wave()) {
+            let used = &mut batches[..packed.len()];
+            each(used, |(k, batch)| {
+                self.gather(&chosen[packed[k].clone()], batch);
+                batch.start(self.environment, self.group.contacts);
+                if notes {
+                    batch.record_impulses();
+                }
+            });
+            solve(used, run.observer);
+            for batch in used {
+                self.note(batch, run);
+                self.keep(batch, run);
+                self.find_too_deep(batch, run);
             }
-        });
-        solve(used, run.observer);
-        for batch in used {
-            self.note(batch, run);
-            self.keep(batch, run);
-            self.find_too_deep(batch, run);
         }
         batches
     }
@@ -161,44 +159,44 @@ impl<'a> Slicer<'a> {
         batch.islands.in_rows(sizes, batch.members.len() - dynamic);
     }
 
-    /// The members of some islands and all whom they may meet, at the start of the frame.
-    fn part(&self, islands: &[u32], pairs: &[(u32, (u32, u32))]) -> Part<'a> {
-        let plan = self.plan;
-        let mut sources: Vec<u32> = Vec::new();
-        for &island in islands {
-            sources.extend(plan.members(island));
-        }
-        let dynamic = sources.len();
-        let unyielding = |i: &u32| plan.place[*i as usize] == Plan::NONE;
-        sources.extend(pairs.iter().flat_map(|(_, (i, j))| [*i, *j]).filter(unyielding));
-        sort_tail(&mut sources, dynamic);
-        let (inside, others) = sources.split_at(dynamic);
-        let mut at = 0;
-        let mut starts = islands.iter().map(|&island| {
-            at += plan.members(island).len();
-            (island, at - plan.members(island).len())
-        });
-        let mut here = starts.next();
-        let mut local_pairs = Vec::with_capacity(pairs.len());
-        for &(island, (i, j)) in pairs {
-            while here.is_some_and(|(other, _)| other != island) {
-                here = starts.next();
+    /// The members of each batch and all whom they may meet, at the start of the frame.
+    fn parts(&self, chosen: &[u32], packed: &[Range<usize>]) -> Vec<Part<'a>> {
+        let mut batch_of = vec![Plan::NONE; self.plan.islands.len()];
+        for (batch, range) in packed.iter().enumerate() {
+            for &island in &chosen[range.clone()] {
+                batch_of[island as usize] = batch as u32;
             }
-            let start = here.map_or(0, |(_, start)| start);
-            let local = |i: u32| {
-                let place = if unyielding(&i) {
-                    dynamic + others.partition_point(|&other| other < i)
-                } else {
-                    start + plan.place[i as usize] as usize - plan.member_range(island).start
-                };
-                place as u32
-            };
-            local_pairs.push((local(i), local(j)));
         }
-        debug_assert!(inside.iter().all(|i| !unyielding(i)));
+        let mut pairs = vec![Vec::new(); packed.len()];
+        for &(i, j) in self.group.pairs {
+            let island = self.plan.island_between(i, j);
+            if island != Plan::NONE && batch_of[island as usize] != Plan::NONE {
+                pairs[batch_of[island as usize] as usize].push((i, j));
+            }
+        }
+        let parts = packed.iter().zip(pairs);
+        parts.map(|(range, pairs)| self.part(&chosen[range.clone()], pairs)).collect()
+    }
+
+    fn part(&self, islands: &[u32], mut pairs: Vec<(u32, u32)>) -> Part<'a> {
+        let mut sources: Vec<u32> =
+            islands.iter().flat_map(|&island| self.plan.members(island)).copied().collect();
+        sources.extend(pairs.iter().flat_map(|(i, j)| [*i, *j]));
+        sort_tail(&mut sources, 0);
+        // Both rise: pairs stay sorted.
+        let local = |i: u32| sources.partition_point(|&source| source < i) as u32;
+        pairs.iter_mut().for_each(|(i, j)| (*i, *j) = (local(*i), local(*j)));
         let members: Vec<Member> = sources.iter().map(|&i| self.group.members[i as usize]).collect();
         let reach = members.iter().map(|m| swept_bound(m.body, &m.state, self.environment)).collect();
-        Part { members, sources, dynamic, pairs: local_pairs, reach }
+        let (mut order, others): (Vec<u32>, Vec<u32>) =
+            (0..members.len() as u32).partition(|&i| members[i as usize].body.is_dynamic());
+        let dynamic = order.len();
+        order.extend(others);
+        let mut place = vec![0; order.len()];
+        for (k, &i) in order.iter().enumerate() {
+            place[i as usize] = k as u32;
+        }
+        Part { members, sources, order, dynamic, place, pairs, reach }
     }
 
     /// One slice of all parts.
@@ -215,27 +213,22 @@ impl<'a> Slicer<'a> {
             parts.iter().map(|part| find_contacts(&part.members, &part.pairs, &environment)).collect();
         let mut batches: Vec<Batch> = batches.into_iter().map(Batch::emptied).collect();
         let used = &mut batches[..parts.len()];
-        for ((batch, part), found) in used.iter_mut().zip(parts.iter()).zip(&found) {
-            batch.members.clone_from(&part.members);
-            batch.sources.clone_from(&part.sources);
-            batch.ends.clear();
-            let ends =
-                |(k, c): (usize, &Contact)| Ends { first: c.first, second: c.second, contact: k as u32 };
-            batch.ends.extend(found.iter().enumerate().map(ends));
-            let others = part.members.len() - part.dynamic;
-            batch.islands.find(part.dynamic, others, found.iter().map(|c| (c.first, c.second)));
-            batch.start(&environment, found);
-            if run.notes.is_some() {
+        let notes = run.notes.is_some();
+        each(used, |(k, batch)| {
+            parts[k].fill(batch, &found[k]);
+            batch.start(&environment, &found[k]);
+            if notes {
                 batch.record_impulses();
             }
-        }
+        });
         run.observer.after(Stage::Collisions);
         solve(used, run.observer);
         for (part, batch) in parts.iter_mut().zip(used) {
             self.note(batch, run);
-            for ((member, state), reach) in part.members.iter_mut().zip(&mut batch.next).zip(&part.reach) {
+            for (state, &i) in batch.next.iter_mut().zip(&part.order) {
+                let member = &mut part.members[i as usize];
                 // Rest is counted in whole frames: at the end.
-                *state = within(member.body, BodyState { rest: 0, ..*state }, reach);
+                *state = within(member.body, BodyState { rest: 0, ..*state }, &part.reach[i as usize]);
                 member.state = *state;
             }
             if last {
@@ -287,27 +280,64 @@ impl<'a> Slicer<'a> {
                 }
             }
         }
-        run.too_deep.sort_unstable();
-        run.too_deep.dedup();
+    }
+}
+
+impl<'a> Part<'a> {
+    /// Gives a batch the members, and contacts that were found between them.
+    fn fill<'b>(&self, batch: &mut Batch<'b>, found: &[Contact])
+    where
+        'a: 'b,
+    {
+        batch.members.clear();
+        batch.members.extend(self.order.iter().map(|&i| self.members[i as usize]));
+        batch.sources.clear();
+        batch.sources.extend(self.order.iter().map(|&i| self.sources[i as usize]));
+        let place = |i: u32| self.place[i as usize];
+        batch.ends.clear();
+        batch.ends.extend(found.iter().enumerate().map(|(k, c)| Ends {
+            first: place(c.first),
+            second: place(c.second),
+            contact: k as u32,
+        }));
+        let others = self.members.len() - self.dynamic;
+        batch.islands.find(self.dynamic, others, batch.ends.iter().map(|e| (e.first, e.second)));
     }
 }
 
 /// The stages of one frame or slice for some batches; batches side by side, stages one after the other.
-fn solve<'b>(batches: &mut [Batch<'b>], observer: &mut dyn Observer) {
-    let mut all = |stage: Stage, f: fn(&mut Batch<'b>)| {
-        match &mut *batches {
-            [] => {}
-            // Nothing to share out: no other thread need wake.
-            [one] => f(one),
-            _ => batches.par_iter_mut().for_each(f),
-        }
-        observer.after(stage);
-    };
-    all(Stage::Velocities, Batch::integrate_velocities);
-    all(Stage::ContactGraph, Batch::build_contact_graph);
-    all(Stage::Contacts, Batch::resolve_contacts);
-    all(Stage::ShockPropagation, Batch::propagate_shock);
-    all(Stage::Positions, Batch::integrate_positions);
+fn solve(batches: &mut [Batch], observer: &mut dyn Observer) {
+    each(batches, |(_, batch)| batch.integrate_velocities());
+    observer.after(Stage::Velocities);
+
+    each(batches, |(_, batch)| batch.build_contact_graph());
+    observer.after(Stage::ContactGraph);
+
+    each(batches, |(_, batch)| batch.resolve_contacts());
+    observer.after(Stage::Contacts);
+
+    each(batches, |(_, batch)| batch.propagate_shock());
+    observer.after(Stage::ShockPropagation);
+
+    each(batches, |(_, batch)| batch.integrate_positions());
+    observer.after(Stage::Positions);
+}
+
+/// How many batches go through the stages together: few, so that what one stage writes is still near when the next reads it; enough to share out.
+/// Batches do not notice each other, so this changes no bits.
+fn wave() -> usize {
+    match rayon::current_num_threads() {
+        1 => 1,
+        threads => BATCHES_PER_THREAD * threads,
+    }
+}
+
+/// Does something to each batch, side by side; to a single one without waking another thread.
+fn each<'b>(batches: &mut [Batch<'b>], act: impl Fn((usize, &mut Batch<'b>)) + Send + Sync) {
+    match batches {
+        [one] => act((0, one)),
+        _ => batches.par_iter_mut().enumerate().for_each(act),
+    }
 }
 
 /// Sorts what comes after the first `kept`, each once.

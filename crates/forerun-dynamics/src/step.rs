@@ -91,7 +91,7 @@ pub(crate) fn advance_islands(
     observer: &mut dyn Observer,
     (touches, scratch): (Option<&mut Touches>, &mut StepScratch),
 ) -> StepReport {
-    let StepScratch { plan, slices, next, slice_counts, chosen } = scratch;
+    let StepScratch { plan, slices, next, slice_counts, chosen, .. } = scratch;
     plan.make(group, environment);
     let mut ledger = touches.is_some().then(Ledger::default);
     let dt = environment.settings.frame_seconds;

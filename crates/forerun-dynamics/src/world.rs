@@ -1,7 +1,7 @@
 //! World: bodies and one state each, for those who want no timeline.
 
 use crate::detection::Detection;
-use crate::scratch::StepScratch;
+use crate::scratch::{StepScratch, emptied};
 use crate::step::{Group, Member, StepReport, advance_islands};
 use crate::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches};
 
@@ -78,14 +78,18 @@ impl World {
         if self.environment.check().is_err() {
             return StepReport::default();
         }
-        let members: Vec<Member> = (self.bodies.iter().zip(&self.states).enumerate())
-            .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state })
-            .collect();
+        let mut members: Vec<Member> = std::mem::take(&mut self.scratch.members);
+        members.extend((self.bodies.iter().zip(&self.states).enumerate()).map(|(i, (body, state))| Member {
+            id: BodyId(i as u32),
+            body,
+            state: *state,
+        }));
         let detection = &mut self.detection;
         detection.run(&members, &self.environment);
         observer.after(Stage::Collisions);
         let group = Group { members: &members, pairs: &detection.pairs, contacts: &detection.contacts };
         let report = advance_islands(&group, &self.environment, observer, (touches, &mut self.scratch));
+        self.scratch.members = emptied(members);
         std::mem::swap(&mut self.states, &mut self.scratch.next);
         report
     }

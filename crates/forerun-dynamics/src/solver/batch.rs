@@ -44,13 +44,13 @@ pub(crate) struct Ends {
 
 /// The contacts of a batch, in canonical order within an island.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Contacts<'a> {
+pub(crate) struct ContactList<'a> {
     pub(crate) ends: &'a [Ends],
     /// What was found, for this batch or for more: who touches is said in other numbers here.
     pub(crate) found: &'a [Contact],
 }
 
-impl<'a> Contacts<'a> {
+impl<'a> ContactList<'a> {
     /// Where contact `k` of the batch touches.
     pub(crate) fn manifold(&self, k: usize) -> &'a Manifold {
         &self.found[self.ends[k].contact as usize].manifold
@@ -64,7 +64,7 @@ pub(crate) struct Batch<'a> {
     pub(crate) members: Vec<Member<'a>>,
     /// By member: its index in the group.
     pub(crate) sources: Vec<u32>,
-    /// See [`Contacts`].
+    /// See [`ContactList`].
     pub(crate) ends: Vec<Ends>,
     pub(crate) found: &'a [Contact],
     pub(crate) islands: Islands,
@@ -125,8 +125,8 @@ impl<'a> Batch<'a> {
     }
 
     /// Where the members touch.
-    pub(crate) fn contacts(&self) -> Contacts<'_> {
-        Contacts { ends: &self.ends, found: self.found }
+    pub(crate) fn contacts(&self) -> ContactList<'_> {
+        ContactList { ends: &self.ends, found: self.found }
     }
 
     /// Has what contacts push with added up. The classic shock propagation's impulses, which act on velocities, are not among it.
@@ -147,7 +147,7 @@ impl<'a> Batch<'a> {
 
     /// Stage 3: levels, load, rows.
     pub(crate) fn build_contact_graph(&mut self) {
-        let contacts = Contacts { ends: &self.ends, found: self.found };
+        let contacts = ContactList { ends: &self.ends, found: self.found };
         self.graph.build(&self.members, &contacts);
         LoadPass {
             members: &self.members,
@@ -278,7 +278,7 @@ impl<'a> Batch<'a> {
         let (members, environment) = (&self.members, &self.environment);
         let at = Resting {
             members,
-            contacts: Contacts { ends: &self.ends, found: self.found },
+            contacts: ContactList { ends: &self.ends, found: self.found },
             deepest: self.graph.deepest(),
             islands: &self.islands,
             driven: &self.driven,

@@ -98,11 +98,11 @@ pub(crate) struct Block<F> {
 }
 
 /// Blocks, in whatever form their numbers are.
-pub(crate) struct BlockForm;
+pub(crate) struct Contacts;
 
 // SAFETY: a block is repr(C), of numbers and indices.
 #[allow(unsafe_code, reason = "says of the layout what kernels rely on")]
-unsafe impl Record for BlockForm {
+unsafe impl Record for Contacts {
     type Of<F: Lanes> = Block<F>;
 }
 

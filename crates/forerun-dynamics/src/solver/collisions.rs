@@ -3,7 +3,7 @@
 //! A contact collides when it approaches and will close within the substep. A body at rest has no velocity before gravity, so that it
 //! does not bounce, whatever its restitution. What gravity adds in one frame counts as rest: a speed that shrinks with the frame, no threshold of its own.
 
-use super::blocks::{Block, BlockForm};
+use super::blocks::{Block, Contacts};
 use super::impulses;
 use super::sweep::{Sides, friction};
 use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast};
@@ -33,7 +33,7 @@ dispatched! {
 
 #[inline(always)]
 fn resolve_lanes<F: Lanes>(blocks: &mut [Block<Portable>], moving: &mut Moving) {
-    let blocks = recast::<F, BlockForm>(blocks);
+    let blocks = recast::<F, Contacts>(blocks);
     for _ in 0..COLLISION_ROUNDS {
         let mut any = false;
         for block in blocks.iter_mut() {

@@ -3,7 +3,7 @@
 //! Promise: levels rise from the bodies that do not yield, one a contact; bodies that touch nothing supported come last. Inside an island levels
 //! and order depend on the island alone, so that islands can be solved together or apart with the same bits.
 
-use super::batch::{Contacts, Ends};
+use super::batch::{ContactList, Ends};
 use crate::Member;
 use crate::scratch::{add_up, fill};
 
@@ -38,14 +38,14 @@ pub(crate) struct ContactGraph {
 
 impl ContactGraph {
     /// Makes this the graph over the bodies of a batch; those that do not yield are the ground.
-    pub(crate) fn build(&mut self, members: &[Member], contacts: &Contacts) {
+    pub(crate) fn build(&mut self, members: &[Member], contacts: &ContactList) {
         self.measure(members, contacts);
         self.link(members.len(), contacts.ends);
         self.assign_levels(members);
     }
 
     /// How near each contact is, and has to be to touch.
-    fn measure(&mut self, members: &[Member], contacts: &Contacts) {
+    fn measure(&mut self, members: &[Member], contacts: &ContactList) {
         let half = |i: u32| members[i as usize].body.half_thickness;
         self.touch.clear();
         self.touch.extend(

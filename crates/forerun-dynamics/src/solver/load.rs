@@ -6,7 +6,7 @@
 
 use forerun_geometry::Vec3;
 
-use super::batch::Contacts;
+use super::batch::ContactList;
 use super::contact_graph::ContactGraph;
 use super::pressure::{Carried, Support, fit};
 use crate::scratch::fill;
@@ -98,7 +98,7 @@ struct Both {
 
 pub(crate) struct LoadPass<'a> {
     pub(crate) members: &'a [Member<'a>],
-    pub(crate) contacts: Contacts<'a>,
+    pub(crate) contacts: ContactList<'a>,
     pub(crate) graph: &'a ContactGraph,
     pub(crate) environment: &'a Environment,
     pub(crate) substep_seconds: f32,

@@ -2,8 +2,8 @@
 
 use forerun_geometry::Vec3;
 
-use super::batch::Contacts;
-use super::blocks::{Block, BlockForm, CentreRow, FrictionRows, NO_CONTACT, PointRow};
+use super::batch::ContactList;
+use super::blocks::{Block, CentreRow, Contacts, FrictionRows, NO_CONTACT, PointRow};
 use super::bodies::Bodies;
 use super::load::Load;
 use crate::lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched, recast};
@@ -22,7 +22,7 @@ const RISE_MIN: f32 = 0.2;
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     pub(crate) members: &'a [Member<'a>],
-    pub(crate) contacts: Contacts<'a>,
+    pub(crate) contacts: ContactList<'a>,
     pub(crate) loads: &'a [Load],
     pub(crate) levels: &'a [u32],
     pub(crate) up: Vec3,
@@ -52,7 +52,7 @@ dispatched! {
 
 #[inline(always)]
 fn prepare_lanes<F: Lanes>(blocks: &mut [Block<Portable>], bodies: &Bodies, source: &Source) {
-    let blocks = recast::<F, BlockForm>(blocks);
+    let blocks = recast::<F, Contacts>(blocks);
     for block in blocks {
         let lanes = load_lanes(block, source);
         fill(block, &lanes, bodies, source.up);

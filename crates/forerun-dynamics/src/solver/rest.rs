@@ -7,7 +7,7 @@
 
 use forerun_geometry::{Quat, Shape, Vec3};
 
-use super::batch::{Contacts, Ends};
+use super::batch::{ContactList, Ends};
 use super::islands::Islands;
 use crate::{BodyState, Environment, Member};
 
@@ -46,7 +46,7 @@ const UNSTEADY: f32 = 0.125;
 /// What the end of a frame needs to know of its contacts, and of who drives whom.
 pub(crate) struct Resting<'a> {
     pub(crate) members: &'a [Member<'a>],
-    pub(crate) contacts: Contacts<'a>,
+    pub(crate) contacts: ContactList<'a>,
     /// By contact: its smallest separation at the start. Metres.
     pub(crate) deepest: &'a [f32],
     pub(crate) islands: &'a Islands,

@@ -3,7 +3,7 @@
 //! The classic form (Guendelman et al. 2003, section 8; dissertation 2.4.7) gives what is below infinite mass and acts on velocities; it is here for
 //! comparison, see [`ShockPropagation`](crate::ShockPropagation). The usual one acts on positions alone, so that it adds no velocity.
 
-use super::blocks::{Block, BlockForm};
+use super::blocks::{Block, Contacts};
 use super::sweep::{Jacobian, Sides};
 use crate::StepSettings;
 use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast};
@@ -25,7 +25,7 @@ fn propagate_lanes<F: Lanes>(
     settings: &StepSettings,
     push_max: f32,
 ) {
-    let blocks = recast::<F, BlockForm>(blocks);
+    let blocks = recast::<F, Contacts>(blocks);
     let part = F::splat(settings.overlap_recovery);
     let allowed = F::splat(settings.overlap_allowed_m);
     let most = F::splat(push_max);
@@ -51,7 +51,7 @@ fn classic_lanes<F: Lanes>(
     displacements: &[Row],
     substep_seconds: f32,
 ) {
-    let blocks = recast::<F, BlockForm>(blocks);
+    let blocks = recast::<F, Contacts>(blocks);
     let per_second = F::splat(1.0 / substep_seconds);
     for block in blocks {
         // The side that yields less than the other is the lower one.

@@ -1,6 +1,6 @@
 //! Sweep: one pass of sequential impulses over the blocks, in level order (Gauss-Seidel).
 
-use super::blocks::{Block, BlockForm, PointRow};
+use super::blocks::{Block, Contacts, PointRow};
 use super::collisions::Moving;
 use crate::lanes::{
     LaneMask, Lanes, Portable, Row, Twist8, V8, dispatched, gather_twist, recast, scatter_twist,
@@ -113,7 +113,7 @@ fn solve_lanes<F: Lanes>(
     displacements: &[Row],
     substep_seconds: f32,
 ) {
-    let blocks = recast::<F, BlockForm>(blocks);
+    let blocks = recast::<F, Contacts>(blocks);
     let per_second = F::splat(1.0 / substep_seconds);
     for block in blocks {
         let mut v = Sides::gather(block, velocities);
@@ -127,7 +127,7 @@ fn solve_lanes<F: Lanes>(
 
 #[inline(always)]
 fn relax_lanes<F: Lanes>(blocks: &mut [Block<Portable>], moving: &mut Moving, bounces: bool) {
-    let blocks = recast::<F, BlockForm>(blocks);
+    let blocks = recast::<F, Contacts>(blocks);
     let per_second = F::splat(1.0 / moving.substep_seconds);
     for block in blocks {
         let mut v = Sides::gather(block, moving.velocities);

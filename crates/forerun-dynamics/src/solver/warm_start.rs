@@ -1,6 +1,6 @@
 //! Warm start: the guessed impulses are applied before the sweeps, and two guards keep guess and sweeps from adding kinetic energy.
 
-use super::blocks::{Block, BlockForm, NO_CONTACT};
+use super::blocks::{Block, Contacts, NO_CONTACT};
 use super::islands::Islands;
 use super::sweep::Sides;
 use crate::lanes::{LANES, Lanes, Portable, Row, dispatched, recast};
@@ -17,7 +17,7 @@ dispatched! {
 
 #[inline(always)]
 fn apply_lanes<F: Lanes>(blocks: &mut [Block<Portable>], velocities: &mut [Row]) {
-    let blocks = recast::<F, BlockForm>(blocks);
+    let blocks = recast::<F, Contacts>(blocks);
     for block in blocks {
         let mut v = Sides::gather(block, velocities);
         for point in &block.points {
