@@ -1,5 +1,6 @@
 //! From entries of a scene file to values of the engine. The entries have been checked before.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -11,15 +12,41 @@ use crate::body::BodyEntry;
 use crate::error::{Fault, Step, Within};
 use crate::mesh::MeshEntry;
 use crate::rotation::RotationEntry;
-use crate::shape::{PartEntry, ShapeEntry};
+use crate::shape::{HullEntry, PartEntry, ShapeEntry};
 
 /// Density of a body that gives neither density nor mass. kg/m³.
 const DENSITY: f32 = 1000.0;
 
-/// The definition of a body. `meshes` has the shape of every mesh by its name.
-pub(crate) fn build_body(entry: &BodyEntry, meshes: &BTreeMap<String, Shape>) -> Result<BodyDef, Fault> {
+/// Shapes that bodies share: meshes by their names, hulls by their points. A thousand equal rocks are one rock in memory.
+#[derive(Debug, Default)]
+pub(crate) struct Shapes {
+    meshes: BTreeMap<String, Shape>,
+    /// Those that were built so far, by the bits of their points.
+    hulls: RefCell<BTreeMap<Vec<[u32; 3]>, Shape>>,
+}
+
+impl Shapes {
+    /// `meshes` has the shape of every mesh that a body may name.
+    pub(crate) fn new(meshes: BTreeMap<String, Shape>) -> Self {
+        Shapes { meshes, hulls: RefCell::default() }
+    }
+
+    fn hull(&self, entry: &HullEntry) -> Result<Shape, ShapeError> {
+        let key: Vec<[u32; 3]> = entry.points.iter().map(|point| point.map(f32::to_bits)).collect();
+        if let Some(known) = self.hulls.borrow().get(&key) {
+            return Ok(known.clone());
+        }
+        let points: Vec<Vec3> = entry.points.iter().copied().map(Vec3::from_array).collect();
+        let hull = Shape::hull(&points)?;
+        self.hulls.borrow_mut().insert(key, hull.clone());
+        Ok(hull)
+    }
+}
+
+/// The definition of a body.
+pub(crate) fn build_body(entry: &BodyEntry, shapes: &Shapes) -> Result<BodyDef, Fault> {
     let def = BodyDef {
-        shape: build_shape(&entry.shape, meshes).in_field("shape")?,
+        shape: build_shape(&entry.shape, shapes).in_field("shape")?,
         pose: pose(entry.position, entry.rotation)?,
         velocity: Vec3::from_array(entry.velocity),
         angular_velocity: Vec3::from_array(entry.angular_velocity),
@@ -78,7 +105,7 @@ pub(crate) fn build_mesh(entry: &MeshEntry, folder: &Path) -> Result<Shape, Faul
     Ok(entry.build(folder)?.into())
 }
 
-fn build_shape(entry: &ShapeEntry, meshes: &BTreeMap<String, Shape>) -> Result<Shape, Fault> {
+fn build_shape(entry: &ShapeEntry, shapes: &Shapes) -> Result<Shape, Fault> {
     let made = |shape: Result<Shape, ShapeError>, field| {
         let fault = |error: ShapeError| Fault::new(error.message, "change the numbers of the shape");
         shape.map_err(fault).in_field(field)
@@ -88,22 +115,19 @@ fn build_shape(entry: &ShapeEntry, meshes: &BTreeMap<String, Shape>) -> Result<S
         ShapeEntry::Box(b) => made(Shape::cuboid(Vec3::from_array(b.half_extents)), "box"),
         ShapeEntry::Capsule(c) => made(Shape::capsule(c.half_height, c.radius), "capsule"),
         ShapeEntry::Cylinder(c) => made(Shape::cylinder(c.half_height, c.radius), "cylinder"),
-        ShapeEntry::Hull(hull) => {
-            let points: Vec<Vec3> = hull.points.iter().copied().map(Vec3::from_array).collect();
-            made(Shape::hull(&points), "hull")
-        }
+        ShapeEntry::Hull(hull) => made(shapes.hull(hull), "hull"),
         ShapeEntry::HalfSpace => Ok(Shape::half_space()),
         ShapeEntry::Compound(parts) => {
             let parts: Result<Vec<_>, Fault> =
-                parts.iter().enumerate().map(|(i, part)| build_part(part, meshes).in_item(i)).collect();
+                parts.iter().enumerate().map(|(i, part)| build_part(part, shapes).in_item(i)).collect();
             made(Shape::compound(parts.in_field("compound")?), "compound")
         }
-        ShapeEntry::Mesh(name) => meshes.get(name).cloned().ok_or_else(|| {
+        ShapeEntry::Mesh(name) => shapes.meshes.get(name).cloned().ok_or_else(|| {
             Fault::new(format!("there is no mesh \"{name}\""), format!("add [meshes.{name}]"))
         }),
     }
 }
 
-fn build_part(part: &PartEntry, meshes: &BTreeMap<String, Shape>) -> Result<(Pose, Shape), Fault> {
-    Ok((pose(part.position, part.rotation)?, build_shape(&part.shape, meshes).in_field("shape")?))
+fn build_part(part: &PartEntry, shapes: &Shapes) -> Result<(Pose, Shape), Fault> {
+    Ok((pose(part.position, part.rotation)?, build_shape(&part.shape, shapes).in_field("shape")?))
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use forerun_dynamics::{BodyDef, BodyKind, Material, Spring};
-use forerun_geometry::{Pose, Quat, Shape, Vec3};
+use forerun_geometry::{Pose, Quat, Vec3};
 
-use crate::build::{build_body, material};
+use crate::build::{Shapes, build_body, material};
 use crate::command_entry::{BodyRef, CommandEntry};
 use crate::error::{Fault, Within};
 use crate::scene::Scene;
@@ -180,7 +180,7 @@ impl<'a> Roster<'a> {
     pub(crate) fn build(
         &self,
         entry: &CommandEntry,
-        (scene, meshes): (&Scene, &BTreeMap<String, Shape>),
+        (scene, shapes): (&Scene, &Shapes),
         added: &mut u32,
     ) -> Result<TimedCommand, Fault> {
         let frame = entry.frame_in(scene);
@@ -188,7 +188,7 @@ impl<'a> Roster<'a> {
         let command = if let Some(new) = &entry.add {
             let body = scene.bodies.len() as u32 + *added;
             *added += 1;
-            SceneCommand::Add { body, def: Box::new(build_body(new, meshes).in_field("add")?) }
+            SceneCommand::Add { body, def: Box::new(build_body(new, shapes).in_field("add")?) }
         } else if let Some(body) = &entry.remove {
             SceneCommand::Remove { body: find(body)? }
         } else if let Some(to) = &entry.move_to {

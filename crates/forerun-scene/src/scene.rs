@@ -8,7 +8,7 @@ use forerun_geometry::{Shape, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::body::BodyEntry;
-use crate::build::{build_body, build_mesh};
+use crate::build::{Shapes, build_body, build_mesh};
 use crate::command::{Roster, TimedCommand};
 use crate::command_entry::CommandEntry;
 use crate::error::{Fault, SceneError, Within};
@@ -164,8 +164,8 @@ impl Scene {
     pub fn bodies(&self) -> Result<Vec<BodyDef>, SceneError> {
         self.check()?;
         let fault = |fault| self.source.error(fault);
-        let meshes = self.build_meshes().map_err(fault)?;
-        let build = |(i, body)| build_body(body, &meshes).in_item(i).in_field("bodies");
+        let shapes = Shapes::new(self.build_meshes().map_err(fault)?);
+        let build = |(i, body)| build_body(body, &shapes).in_item(i).in_field("bodies");
         self.bodies.iter().enumerate().map(build).collect::<Result<_, _>>().map_err(fault)
     }
 
@@ -184,10 +184,10 @@ impl Scene {
     fn build_commands(&self) -> Result<Vec<TimedCommand>, Fault> {
         let roster = Roster::new(self)?;
         let adds = self.commands.iter().any(|command| command.add.is_some());
-        let meshes = if adds { self.build_meshes()? } else { BTreeMap::new() };
+        let shapes = Shapes::new(if adds { self.build_meshes()? } else { BTreeMap::new() });
         let mut added = 0;
         let build =
-            |(i, command)| roster.build(command, (self, &meshes), &mut added).in_item(i).in_field("commands");
+            |(i, command)| roster.build(command, (self, &shapes), &mut added).in_item(i).in_field("commands");
         self.commands.iter().enumerate().map(build).collect()
     }
 

@@ -10,7 +10,7 @@ fn name_and_size(built_in: &BuiltIn) -> String {
     match built_in.name {
         "many_pyramids" | "islands" => format!("{}:9", built_in.name),
         "large_pyramid" => "large_pyramid:40".to_owned(),
-        "rings" | "rain" => format!("{}:100", built_in.name),
+        "rings" | "rain" | "convex_pile" => format!("{}:100", built_in.name),
         name => name.to_owned(),
     }
 }

@@ -79,6 +79,7 @@ static BUILT_INS: &[BuiltIn] = &[
     sized("rain", (1000, 100_000, "bodies"), "Balls, boxes and capsules fall into a pit", piles::rain),
     sized("rings", (500, 5000, "rings"), "Rings fall over 25 poles", piles::rings),
     sized("tori", (50, 10_000, "rings"), "Rings of 1536 triangles fall on a heap", piles::tori),
+    sized("convex_pile", (5120, 100_000, "rocks"), "A column of rocks collapses", piles::convex_pile),
     sized("domino_lines", (40, 1000, "lines"), "Lines of 25 dominoes that never meet", groups::domino_lines),
     sized("walls", (20, 1000, "piles"), "Piles with thin walls between them", groups::walls),
     sized("break", (4, 50, "rows of balls"), "A break on a billiard table", groups::billiard_break),

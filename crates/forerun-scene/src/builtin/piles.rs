@@ -1,11 +1,11 @@
-//! Scenes to compare engines by: pyramids, islands, rain, rings, tori.
+//! Scenes to compare engines by: pyramids, islands, rain, rings, tori, rocks.
 
 use forerun_geometry::Vec3;
 
 use super::noise::Noise;
 use super::parts::{cube, cuboid, cylinder, ground, mesh, sphere, turn, walls};
 use crate::mesh::TorusEntry;
-use crate::shape::{BoxEntry, CapsuleEntry};
+use crate::shape::{BoxEntry, CapsuleEntry, HullEntry};
 use crate::{BodyEntry, MeshEntry, Scene, ShapeEntry};
 
 /// Adds a wall of cubes that touch exactly, `base` in the lowest row and one less in each row above.
@@ -163,6 +163,34 @@ pub(super) fn tori(count: u32) -> Scene {
     scene
 }
 
+/// A column of rocks, 8 x 8 in a layer, collapses into a heap: `HugePileOfLargeConvexes` of PEEL (Terdiman), as Box3D's `convex_pile` has it.
+pub(super) fn convex_pile(count: u32) -> Scene {
+    const SPACING: f32 = 4.0;
+    let mut scene = Scene::new("convex_pile", "A column of rocks of 32 corners collapses into a heap.");
+    scene.gravity = [0.0, -10.0, 0.0];
+    scene.put(cuboid(250.0, 1.0, 250.0).at(-Vec3::Y).surface(0.6, 0.0).named("ground").fixed());
+    let rock = BodyEntry::new(ShapeEntry::Hull(HullEntry { points: rock_points() })).surface(0.6, 0.0);
+    for i in 0..count {
+        let (layer, cell) = (i / 64, i % 64);
+        let place = Vec3::new(centred(cell / 8, 8), 0.5 + layer as f32, centred(cell % 8, 8)) * SPACING;
+        scene.put(rock.clone().at(place));
+    }
+    scene
+}
+
+/// 32 points on a sphere of radius 2 m, all directions equally likely: corners of a cube are rejected. The numbers are those of PEEL's generator
+/// (the low 16 bits of BCPL's linear congruence), so that the rock is the published one.
+fn rock_points() -> Vec<[f32; 3]> {
+    let mut state = 42_u32;
+    let mut number = || {
+        state = state.wrapping_mul(2_147_001_325).wrapping_add(715_136_305);
+        (state & 0xffff) as f32 / 65_535.0 - 0.5
+    };
+    let points = std::iter::repeat_with(|| Vec3::new(number(), number(), number()));
+    let inside = points.filter(|point| point.length_squared() <= 0.25);
+    inside.map(|point| (point.normalize() * 2.0).to_array()).take(32).collect()
+}
+
 /// Side of the smallest square of cells that holds `count`.
 pub(super) fn square_side(count: u32) -> u32 {
     let mut side = 1;
@@ -179,6 +207,10 @@ pub(super) fn centred(i: u32, count: u32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use forerun_geometry::Shape;
+
     use super::*;
 
     #[test]
@@ -198,6 +230,24 @@ mod tests {
         assert_eq!(many_pyramids(196).bodies.len(), 1 + 10_780);
         assert_eq!(rain(1000).bodies.len(), 1 + 4 + 1000);
         assert_eq!(rings(500).bodies.len(), 1 + 25 + 500);
+    }
+
+    /// The generator's first two triples, (531, 8648, 47961) and (14742, 61199, 64276), lie outside; the third was worked out apart from this code.
+    #[test]
+    fn the_rock_is_the_published_one_and_all_rocks_share_it() {
+        let points: Vec<Vec3> = rock_points().into_iter().map(Vec3::from_array).collect();
+        assert_eq!(points.len(), 32);
+        assert!(points.iter().all(|p| (p.length() - 2.0).abs() < 1e-6));
+        let first = Vec3::new(19_125.0, 34_242.0, 30_667.0) / 65_535.0 - Vec3::splat(0.5);
+        assert!(points[0].distance(first.normalize() * 2.0) < 1e-5, "{}", points[0]);
+        let bodies = convex_pile(5120).bodies().unwrap();
+        assert_eq!(bodies.len(), 1 + 5120);
+        let (Shape::Hull(a), Shape::Hull(b)) = (&bodies[1].shape, &bodies[5120].shape) else {
+            panic!("not hulls")
+        };
+        assert!(Arc::ptr_eq(a, b));
+        assert_eq!(a.vertices.len(), 32);
+        assert_eq!((bodies[1].pose.position.y, bodies[5120].pose.position.y), (2.0, 318.0));
     }
 
     #[test]
