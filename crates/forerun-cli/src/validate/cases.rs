@@ -2,13 +2,19 @@
 
 use super::{Case, Figure};
 
+mod arch;
+mod ball_cube;
 mod block_on_slope;
 mod bouncing_balls;
+mod capstone;
+mod card_house;
 mod euler_disc;
 mod free_fall;
 mod free_rotation;
+mod kapla;
 mod newton_chain;
 mod off_centre_impact;
+mod plank;
 mod rolling_down;
 mod sampling;
 mod spinning_ball;
@@ -18,6 +24,7 @@ mod timeline_cost;
 mod timeline_cutoff;
 mod timeline_memory;
 mod timeline_scrub;
+mod towers;
 
 /// All cases, in the order in which they are run.
 pub(crate) const CASES: &[Case] = &[
@@ -30,6 +37,15 @@ pub(crate) const CASES: &[Case] = &[
     short("spinning_ball", spinning_ball::run),
     short("euler_disc", euler_disc::run),
     short("newton_chain", newton_chain::run),
+    short("kapla", kapla::run),
+    short("ball_cube", ball_cube::run),
+    short("elastic_ball_cube", ball_cube::run_elastic),
+    short("towers", towers::run),
+    short("card_house", card_house::run),
+    short("arch", arch::run),
+    short("capstone", capstone::run),
+    short("plank", plank::run),
+    long("kapla_long", kapla::run_long),
     short("sampling", sampling::run),
     short("timeline_cutoff", timeline_cutoff::run),
     short("timeline_containment", timeline_containment::run),

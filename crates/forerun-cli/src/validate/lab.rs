@@ -1,7 +1,8 @@
-//! Lab: what the cases share: worlds, slopes, energy and momentum.
+//! Lab: what the cases share: built-in scenes, worlds, slopes, energy and momentum.
 //!
 //! Figures are computed in double precision from the stored states.
 
+use forerun::Scene;
 use forerun::dynamics::{Body, BodyDef, BodyState, Environment, StepSettings, Unobserved, World};
 use forerun::geometry::{Pose, Quat, Shape, Vec3};
 
@@ -12,6 +13,16 @@ pub(crate) const GRAVITY_98: Vec3 = Vec3::new(0.0, -9.8, 0.0);
 pub(crate) fn environment(gravity: Vec3, rate: u32) -> Environment {
     let settings = StepSettings { frame_seconds: 1.0 / rate as f32, ..StepSettings::default() };
     Environment { gravity, settings }
+}
+
+/// Bodies and environment of a built-in scene, without its commands.
+///
+/// # Panics
+/// When there is no such scene: the cases are fixed, so that this is a mistake in a case.
+pub(crate) fn built_in(name: &str) -> (Vec<BodyDef>, Environment) {
+    let scene = Scene::open(name).expect("a built-in scene");
+    let bodies = scene.bodies().expect("the bodies of a built-in scene are possible");
+    (bodies, scene.environment())
 }
 
 /// A world with these bodies, in this order.
@@ -144,4 +155,42 @@ pub(crate) fn rotated(q: [f64; 4], v: [f64; 3]) -> [f64; 3] {
     let t = cross(axis, v).map(|x| 2.0 * x);
     let u = cross(axis, t);
     [0, 1, 2].map(|k| v[k] + q[3] * t[k] + u[k])
+}
+
+/// Kinetic and potential energy of the dynamic bodies, heights from y = 0 against a gravity (m/s²) along -y. J
+pub(crate) fn mechanical_energy(bodies: &[Body], states: &[BodyState], gravity: f64) -> f64 {
+    let pairs = bodies.iter().zip(states).filter(|(body, _)| body.is_dynamic());
+    pairs
+        .map(|(body, state)| {
+            let weight = gravity / f64::from(body.inverse_mass);
+            kinetic_energy(body, state) + weight * f64::from(state.position.y)
+        })
+        .sum()
+}
+
+/// Distance between two places of a body. Metres
+pub(crate) fn moved(first: &BodyState, now: &BodyState) -> f64 {
+    let (a, b) = (doubled(first.position), doubled(now.position));
+    length([0, 1, 2].map(|k| b[k] - a[k]))
+}
+
+/// Angle between two rotations of a body. Degrees, 0 to 180
+pub(crate) fn turned(first: &BodyState, now: &BodyState) -> f64 {
+    let relative = (first.rotation.conjugate() * now.rotation).to_array().map(f64::from);
+    let sine = length([relative[0], relative[1], relative[2]]);
+    2.0 * sine.atan2(relative[3].abs()).to_degrees()
+}
+
+/// The speed of the fastest centre of mass. m/s
+pub(crate) fn fastest(states: &[BodyState]) -> f64 {
+    states.iter().map(|state| length(doubled(state.velocity))).fold(0.0, f64::max)
+}
+
+/// The largest of a number over all bodies, each at first and now.
+pub(crate) fn worst(
+    first: &[BodyState],
+    now: &[BodyState],
+    of: impl Fn(&BodyState, &BodyState) -> f64,
+) -> f64 {
+    first.iter().zip(now).map(|(first, now)| of(first, now)).fold(0.0, f64::max)
 }

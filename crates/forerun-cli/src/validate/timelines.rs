@@ -1,18 +1,8 @@
-//! Timelines: what the cases about them share: built-in scenes, edits, and what an edit cost.
+//! Timelines: what the cases about them share: edits, and what an edit cost.
 
 use forerun::timeline::check::{full_run, mismatches};
 use forerun::timeline::{Advance, Change, Command, Frame, Progress, Timeline, TimelineSettings};
-use forerun::{BodyDef, BodyId, Environment, Scene, Vec3};
-
-/// Bodies and environment of a built-in scene, without its commands.
-///
-/// # Panics
-/// When there is no such scene: the cases are fixed, so that this is a mistake in a case.
-pub(crate) fn built_in(name: &str) -> (Vec<BodyDef>, Environment) {
-    let scene = Scene::open(name).expect("a built-in scene");
-    let bodies = scene.bodies().expect("the bodies of a built-in scene are possible");
-    (bodies, scene.environment())
-}
+use forerun::{BodyDef, BodyId, Environment, Vec3};
 
 /// All frames to `frames`, computed and kept.
 ///

@@ -2,6 +2,7 @@
 //!
 //! Sizes, distances and speeds are those of the published cases that each scene names, so that figures can be put side by side.
 
+mod balls;
 mod dissertation;
 mod flying;
 mod groups;
@@ -10,6 +11,7 @@ mod parts;
 mod piles;
 mod sliding;
 mod structures;
+mod towers;
 
 use crate::error::{Fault, SceneError};
 use crate::scene::Scene;
@@ -96,6 +98,28 @@ static BUILT_INS: &[BuiltIn] = &[
     single("arch", "An arch of 17 wedges that carries 4 boxes", structures::arch),
     single("plank", "A plank over an edge becomes a catapult", structures::plank),
     sized("kapla", (6, 100, "floors"), "A tower of loose blocks, 17 a floor", structures::kapla),
+    sized("tower", (40, 1000, "cubes"), "A tower of cubes that touch", towers::tower),
+    sized(
+        "falling_tower",
+        (40, 1000, "cubes"),
+        "A tower of cubes that falls together",
+        towers::falling_tower,
+    ),
+    sized("jenga", (30, 1000, "layers"), "A tower of planks laid crosswise", towers::jenga),
+    sized(
+        "tiny_pyramid",
+        (30, 500, "cubes in the lowest row"),
+        "A pyramid of 5 cm cubes",
+        towers::tiny_pyramid,
+    ),
+    sized("card_house", (5, 50, "levels"), "A house of cards", towers::card_house),
+    sized("ball_cube", (6, 40, "balls along an edge"), "A cube of balls falls apart", balls::cube_collapses),
+    sized(
+        "elastic_ball_cube",
+        (6, 40, "balls along an edge"),
+        "A cube of elastic balls falls apart",
+        balls::cube_bounces,
+    ),
     single("a01a", "Slope: a block slides 0.624 m and stops", sliding::a01a),
     single("a01b", "Slope: a block slides faster and faster", sliding::a01b),
     single("a01c", "Level: three blocks slide equally far", sliding::a01c),

@@ -6,7 +6,7 @@ use forerun::Threads;
 use forerun::timeline::check::{CheckReport, CheckSettings, check};
 
 use crate::validate::Figure;
-use crate::validate::timelines::built_in;
+use crate::validate::lab::built_in;
 
 const EDITS: u32 = 200;
 const THREADS: [u16; 3] = [1, 2, 4];

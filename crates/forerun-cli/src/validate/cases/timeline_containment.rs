@@ -6,7 +6,8 @@ use forerun::timeline::{Change, Frame, Timeline};
 use forerun::{BodyId, Vec3};
 
 use crate::validate::Figure;
-use crate::validate::timelines::{built_in, computed, edit, first_difference, push, wrong};
+use crate::validate::lab::built_in;
+use crate::validate::timelines::{computed, edit, first_difference, push, wrong};
 
 const FRAMES: u32 = 480;
 const EDIT: Frame = Frame(100);

@@ -4,7 +4,8 @@ use forerun::timeline::{Frame, Timeline};
 use forerun::{BodyDef, BodyId, Clock, Environment, Vec3};
 
 use crate::validate::Figure;
-use crate::validate::timelines::{built_in, computed, edit, first_difference, push, wrong};
+use crate::validate::lab::built_in;
+use crate::validate::timelines::{computed, edit, first_difference, push, wrong};
 
 /// How much more than the ideal may be computed.
 const ALLOWANCE: f64 = 1.10;

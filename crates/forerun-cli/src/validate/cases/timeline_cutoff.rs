@@ -6,7 +6,8 @@ use forerun::timeline::{Change, Frame, Timeline};
 use forerun::{BodyDef, BodyId, BodyKind, Cuboid, Environment, Pose, Shape, Vec3};
 
 use crate::validate::Figure;
-use crate::validate::timelines::{built_in, computed, edit, push, wrong};
+use crate::validate::lab::built_in;
+use crate::validate::timelines::{computed, edit, push, wrong};
 
 const FRAMES: u32 = 300;
 const EDIT: Frame = Frame(100);

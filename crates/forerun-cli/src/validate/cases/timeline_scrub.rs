@@ -6,7 +6,7 @@ use forerun::{BodyId, Clock};
 
 use crate::stats::Spread;
 use crate::validate::Figure;
-use crate::validate::timelines::built_in;
+use crate::validate::lab::built_in;
 
 const FRAMES: u32 = 3600;
 const SEEKS: u32 = 10_000;
