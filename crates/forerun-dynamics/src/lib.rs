@@ -10,7 +10,7 @@ pub mod body;
 pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
-mod lanes;
+pub mod lanes;
 pub mod meter;
 pub mod narrow_phase;
 mod plan;

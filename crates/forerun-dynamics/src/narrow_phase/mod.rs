@@ -19,6 +19,8 @@ use crate::{Environment, Member, bounds};
 
 /// A pair is fast when its contacts are looked for this many contact margins ahead.
 const FAST: f32 = 2.0;
+/// Spheres are taken to be larger by this factor, so that no contact is lost to rounding.
+const ROUNDING: f32 = 1.001;
 /// Pairs that one task looks at; small enough to share out, large enough to fill the lanes.
 const PAIRS_PER_TASK: usize = 512;
 
@@ -77,6 +79,9 @@ impl Finder<'_> {
         for (slot, &(first, second)) in pairs.iter().enumerate() {
             let (i, j) = (first as usize, second as usize);
             let margin = self.margin(i, j);
+            if self.spheres_apart(i, j, margin) {
+                continue;
+            }
             let boxes = self.box_of[i] != u32::MAX && self.box_of[j] != u32::MAX;
             // Fast boxes may meet in a corner, or pass each other: the lanes know only faces and edges.
             if boxes && margin <= FAST * self.environment.settings.contact_margin_m {
@@ -114,6 +119,13 @@ impl Finder<'_> {
     fn placed(&self, i: usize) -> Placed<'_> {
         let (motion, pose) = self.placed[i];
         Placed { shape: &self.members[i].body.shape, pose, motion }
+    }
+
+    /// Whether even the spheres around the two are farther apart than the margin: bounds of round things overlap in their corners.
+    fn spheres_apart(&self, i: usize, j: usize, margin: f32) -> bool {
+        let (a, b) = (&self.members[i], &self.members[j]);
+        let reach = (a.body.radius + b.body.radius + margin) * ROUNDING;
+        (a.state.position - b.state.position).length_squared() > reach * reach
     }
 
     fn margin(&self, i: usize, j: usize) -> f32 {

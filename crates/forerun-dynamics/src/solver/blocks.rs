@@ -4,7 +4,7 @@
 //! same body. The colour of a contact depends on its island alone; which lane it lands in does not change its result.
 
 use super::contact_graph::ContactGraph;
-use crate::lanes::{LANES, Lanes, Portable, V8};
+use crate::lanes::{LANES, Lanes, Portable, Record, V8};
 use crate::narrow_phase::Contact;
 
 /// Padding: a lane without a contact.
@@ -95,6 +95,15 @@ pub(crate) struct Block<F> {
     pub(crate) restitution: F,
     /// The part of the first guess that is momentum: it is taken off before the second substep.
     pub(crate) momentum: Impulses<F>,
+}
+
+/// Blocks, in whatever form their numbers are.
+pub(crate) struct Contacts;
+
+// SAFETY: a block is repr(C), of numbers and indices.
+#[allow(unsafe_code, reason = "says of the layout what kernels rely on")]
+unsafe impl Record for Contacts {
+    type Of<F: Lanes> = Block<F>;
 }
 
 impl<F: Lanes> Block<F> {

@@ -3,10 +3,10 @@
 //! A contact collides when it approaches and will close within the substep. A body at rest has no velocity before gravity, so that it
 //! does not bounce, whatever its restitution. What gravity adds in one frame counts as rest: a speed that shrinks with the frame, no threshold of its own.
 
-use super::blocks::Block;
+use super::blocks::{Block, Contacts};
 use super::impulses;
 use super::sweep::{Sides, friction};
-use crate::lanes::{LaneMask, Lanes, Row, dispatched};
+use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast};
 
 /// A collision may cause the next one within the same substep (a row of balls), at most so many in a row.
 const COLLISION_ROUNDS: usize = 4;
@@ -28,11 +28,12 @@ pub(crate) struct Moving<'a> {
 
 dispatched! {
     /// Bounces every contact that collides in this substep.
-    pub(crate) fn resolve_collisions(blocks: &mut [Block], moving: &mut Moving) => resolve_lanes
+    pub(crate) fn resolve_collisions(blocks: &mut [Block<Portable>], moving: &mut Moving) => resolve_lanes
 }
 
 #[inline(always)]
-fn resolve_lanes<F: Lanes>(blocks: &mut [Block<F>], moving: &mut Moving) {
+fn resolve_lanes<F: Lanes>(blocks: &mut [Block<Portable>], moving: &mut Moving) {
+    let blocks = recast::<F, Contacts>(blocks);
     for _ in 0..COLLISION_ROUNDS {
         let mut any = false;
         for block in blocks.iter_mut() {

@@ -22,13 +22,13 @@ mod shock;
 mod spring;
 mod standing;
 mod sweep;
+mod team;
 mod velocities;
 mod warm_start;
 
 mod batch;
 
 pub(crate) use batch::{Batch, is_mesh};
-pub(crate) use blocks::Block;
 pub(crate) use flight::fly;
 pub(crate) use islands::Islands;
 pub(crate) use rest::rest_after_slices;

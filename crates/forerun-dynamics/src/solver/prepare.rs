@@ -2,10 +2,10 @@
 
 use forerun_geometry::Vec3;
 
-use super::blocks::{Block, CentreRow, FrictionRows, NO_CONTACT, PointRow};
+use super::blocks::{Block, CentreRow, Contacts, FrictionRows, NO_CONTACT, PointRow};
 use super::bodies::Bodies;
 use super::load::Load;
-use crate::lanes::{LANES, LaneMask, Lanes, V8, dispatched};
+use crate::lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched, recast};
 use crate::narrow_phase::Contact;
 use crate::{Material, Member};
 
@@ -47,11 +47,12 @@ struct Arrays {
 
 dispatched! {
     /// Fills the rows of blocks whose indices are set.
-    pub(crate) fn prepare(blocks: &mut [Block], bodies: &Bodies, source: &Source) => prepare_lanes
+    pub(crate) fn prepare(blocks: &mut [Block<Portable>], bodies: &Bodies, source: &Source) => prepare_lanes
 }
 
 #[inline(always)]
-fn prepare_lanes<F: Lanes>(blocks: &mut [Block<F>], bodies: &Bodies, source: &Source) {
+fn prepare_lanes<F: Lanes>(blocks: &mut [Block<Portable>], bodies: &Bodies, source: &Source) {
+    let blocks = recast::<F, Contacts>(blocks);
     for block in blocks {
         let lanes = load_lanes(block, source);
         fill(block, &lanes, bodies, source.up);

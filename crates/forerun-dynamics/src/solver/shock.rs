@@ -3,15 +3,15 @@
 //! The classic form (Guendelman et al. 2003, section 8; dissertation 2.4.7) gives what is below infinite mass and acts on velocities; it is here for
 //! comparison, see [`ShockPropagation`](crate::ShockPropagation). The usual one acts on positions alone, so that it adds no velocity.
 
-use super::blocks::Block;
+use super::blocks::{Block, Contacts};
 use super::sweep::{Jacobian, Sides};
 use crate::StepSettings;
-use crate::lanes::{LaneMask, Lanes, Row, dispatched};
+use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast};
 
 dispatched! {
     /// One pass over all blocks, on the displacements. `push_max` is the most overlap it removes, in metres.
     pub(crate) fn propagate_shock(
-        blocks: &mut [Block],
+        blocks: &mut [Block<Portable>],
         displacements: &mut [Row],
         settings: &StepSettings,
         push_max: f32,
@@ -20,11 +20,12 @@ dispatched! {
 
 #[inline(always)]
 fn propagate_lanes<F: Lanes>(
-    blocks: &mut [Block<F>],
+    blocks: &mut [Block<Portable>],
     displacements: &mut [Row],
     settings: &StepSettings,
     push_max: f32,
 ) {
+    let blocks = recast::<F, Contacts>(blocks);
     let part = F::splat(settings.overlap_recovery);
     let allowed = F::splat(settings.overlap_allowed_m);
     let most = F::splat(push_max);
@@ -36,7 +37,7 @@ fn propagate_lanes<F: Lanes>(
 dispatched! {
     /// The classic form: one pass over the velocities, by rising level, as if the lower body of every contact had infinite mass.
     pub(crate) fn propagate_classic(
-        blocks: &mut [Block],
+        blocks: &mut [Block<Portable>],
         velocities: &mut [Row],
         displacements: &[Row],
         substep_seconds: f32,
@@ -45,11 +46,12 @@ dispatched! {
 
 #[inline(always)]
 fn classic_lanes<F: Lanes>(
-    blocks: &mut [Block<F>],
+    blocks: &mut [Block<Portable>],
     velocities: &mut [Row],
     displacements: &[Row],
     substep_seconds: f32,
 ) {
+    let blocks = recast::<F, Contacts>(blocks);
     let per_second = F::splat(1.0 / substep_seconds);
     for block in blocks {
         // The side that yields less than the other is the lower one.

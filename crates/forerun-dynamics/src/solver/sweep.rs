@@ -1,8 +1,10 @@
 //! Sweep: one pass of sequential impulses over the blocks, in level order (Gauss-Seidel).
 
-use super::blocks::{Block, PointRow};
+use super::blocks::{Block, Contacts, PointRow};
 use super::collisions::Moving;
-use crate::lanes::{LaneMask, Lanes, Row, Twist8, V8, dispatched, gather_twist, scatter_twist};
+use crate::lanes::{
+    LaneMask, Lanes, Portable, Row, Twist8, V8, dispatched, gather_twist, recast, scatter_twist,
+};
 
 /// The two bodies of eight contacts, with the impulses applied so far.
 pub(crate) struct Sides<F> {
@@ -89,7 +91,7 @@ const FREE_APPROACH: f32 = 1e6;
 dispatched! {
     /// One sweep over all blocks. A gap may close within the substep but not more; overlap is left to the shock propagation.
     pub(crate) fn sweep(
-        blocks: &mut [Block],
+        blocks: &mut [Block<Portable>],
         velocities: &mut [Row],
         displacements: &[Row],
         substep_seconds: f32,
@@ -101,16 +103,17 @@ dispatched! {
     ///
     /// Where there are bounces, an open point of a contact that may bounce is left alone when it approaches faster than what rests: the next
     /// substep's collision is to see it.
-    pub(crate) fn relax(blocks: &mut [Block], moving: &mut Moving, bounces: bool) => relax_lanes
+    pub(crate) fn relax(blocks: &mut [Block<Portable>], moving: &mut Moving, bounces: bool) => relax_lanes
 }
 
 #[inline(always)]
 fn solve_lanes<F: Lanes>(
-    blocks: &mut [Block<F>],
+    blocks: &mut [Block<Portable>],
     velocities: &mut [Row],
     displacements: &[Row],
     substep_seconds: f32,
 ) {
+    let blocks = recast::<F, Contacts>(blocks);
     let per_second = F::splat(1.0 / substep_seconds);
     for block in blocks {
         let mut v = Sides::gather(block, velocities);
@@ -123,7 +126,8 @@ fn solve_lanes<F: Lanes>(
 }
 
 #[inline(always)]
-fn relax_lanes<F: Lanes>(blocks: &mut [Block<F>], moving: &mut Moving, bounces: bool) {
+fn relax_lanes<F: Lanes>(blocks: &mut [Block<Portable>], moving: &mut Moving, bounces: bool) {
+    let blocks = recast::<F, Contacts>(blocks);
     let per_second = F::splat(1.0 / moving.substep_seconds);
     for block in blocks {
         let mut v = Sides::gather(block, moving.velocities);

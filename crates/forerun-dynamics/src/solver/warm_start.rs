@@ -1,9 +1,9 @@
 //! Warm start: the guessed impulses are applied before the sweeps, and two guards keep guess and sweeps from adding kinetic energy.
 
-use super::blocks::{Block, NO_CONTACT};
+use super::blocks::{Block, Contacts, NO_CONTACT};
 use super::islands::Islands;
 use super::sweep::Sides;
-use crate::lanes::{LANES, Lanes, Portable, Row, dispatched};
+use crate::lanes::{LANES, Lanes, Portable, Row, dispatched, recast};
 
 /// Below this optimal step the guess would add energy as it stands (it would be neutral at one half).
 const STEP_MIN: f64 = 0.52;
@@ -12,11 +12,12 @@ const GAIN_ALLOWED: f64 = 1e-7;
 
 dispatched! {
     /// Applies all impulses of all blocks to the velocities.
-    pub(crate) fn apply_impulses(blocks: &mut [Block], velocities: &mut [Row]) => apply_lanes
+    pub(crate) fn apply_impulses(blocks: &mut [Block<Portable>], velocities: &mut [Row]) => apply_lanes
 }
 
 #[inline(always)]
-fn apply_lanes<F: Lanes>(blocks: &mut [Block<F>], velocities: &mut [Row]) {
+fn apply_lanes<F: Lanes>(blocks: &mut [Block<Portable>], velocities: &mut [Row]) {
+    let blocks = recast::<F, Contacts>(blocks);
     for block in blocks {
         let mut v = Sides::gather(block, velocities);
         for point in &block.points {

@@ -25,8 +25,14 @@ pub(crate) fn cuboid(x: f32, y: f32, z: f32) -> Shape {
 /// The hull of a few points in convex position, by trying all planes through three of them.
 pub(crate) fn hull(points: &[Vec3]) -> Shape {
     let centre = points.iter().fold(Vec3::ZERO, |sum, point| sum + *point) / points.len() as f32;
-    let mut made =
-        Hull { vertices: points.to_vec(), faces: Vec::new(), corners: Vec::new(), edges: Vec::new(), centre };
+    let mut made = Hull {
+        vertices: points.to_vec(),
+        faces: Vec::new(),
+        corners: Vec::new(),
+        edges: Vec::new(),
+        centre,
+        inner_radius: 0.0,
+    };
     let count = points.len();
     for i in 0..count {
         for j in i + 1..count {
