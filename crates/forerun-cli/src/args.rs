@@ -175,9 +175,15 @@ pub(crate) struct BenchArgs {
     /// Threads of the physics
     #[arg(long, default_value_t = 1, value_parser = threads())]
     pub(crate) threads: u16,
+    /// Frames that pass before the first measured one, so that the scene can come to rest
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub(crate) settle: u32,
     /// Let nothing come to rest, to compare with engines whose sleep is off
     #[arg(long)]
     pub(crate) awake: bool,
+    /// Draw where the time goes, by stage, to FILE as SVG and as PNG, whatever its ending
+    #[arg(long, value_name = "FILE")]
+    pub(crate) chart: Option<PathBuf>,
     /// Print the result as JSON and nothing else
     #[arg(long)]
     pub(crate) json: bool,
@@ -190,6 +196,9 @@ pub(crate) struct ValidateArgs {
     /// Exit with code 1 when a figure misses its limit
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Print the result as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

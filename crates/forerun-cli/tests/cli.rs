@@ -201,10 +201,40 @@ fn scenes_are_listed_and_printed_as_files_that_can_be_run() {
 }
 
 #[test]
+fn bench_lets_a_scene_come_to_rest_and_draws_its_stages() {
+    let chart = folder("bench").join("stages.any");
+    let args = ["bench", "islands:1", "--frames", "10", "--settle", "200", "--json", "--chart"];
+    let report = json(&forerun(&[&args[..], &[chart.to_str().expect("plain")]].concat()));
+    let scene = &report["scenes"][0];
+    assert_eq!(scene["settle"], 200);
+    // Asleep: nothing is stored, and the world stands still. In the air at first: 52 bytes and more a body and frame.
+    assert_eq!(scene["bytes_per_body_frame"].as_f64(), Some(0.0));
+    assert_eq!(scene["speed_end_mean"].as_f64(), Some(0.0));
+    let falling = json(&forerun(&["bench", "islands:1", "--frames", "10", "--json"]));
+    assert!(falling["scenes"][0]["bytes_per_body_frame"].as_f64() > Some(50.0));
+    assert!(scene["timeline_frame_ms"].as_f64() < falling["scenes"][0]["timeline_frame_ms"].as_f64());
+    let svg = std::fs::read_to_string(chart.with_extension("svg")).expect("stages.svg");
+    assert!(svg.contains("shock propagation") && svg.contains("islands:1, "), "{svg}");
+    assert!(chart.with_extension("png").exists());
+}
+
+#[test]
 fn validate_prints_a_table_and_ends_well() {
     let output = forerun(&["validate", "free_fall"]);
     assert_eq!(code(&output), Some(0));
     assert!(text(&output.stdout).starts_with("| case | figure | value | limit | |\n|---|"));
+}
+
+#[test]
+fn validate_prints_one_json_object() {
+    let report = json(&forerun(&["validate", "free_fall", "arch", "--json"]));
+    let figures = report["figures"].as_array().expect("a list");
+    let count = |verdict: &str| figures.iter().filter(|figure| figure["verdict"] == verdict).count();
+    assert!(figures.iter().all(|figure| figure["value"].is_number() && figure["limit"].is_string()));
+    assert_eq!(figures[0]["case"], "free_fall");
+    assert_eq!(report["passed"], count("pass"));
+    assert_eq!(report["judged"], count("pass") + count("miss"));
+    assert_eq!(report["not_run"].as_array().map(Vec::len), Some(0));
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Arrange: which contact goes into which lane of which block.
 
+use super::batch::Ends;
 use super::blocks::Arranged;
 use super::contact_graph::ContactGraph;
 use super::points::Kind;
 use crate::lanes::LANES;
-use crate::narrow_phase::Contact;
 
 /// Colours within a level. Contacts that find no free colour get a block each.
 const COLOURS: usize = 64;
@@ -14,7 +14,7 @@ const OVERFLOW: usize = COLOURS - 1;
 #[derive(Clone, Copy)]
 pub(crate) struct Order<'a> {
     pub(crate) graph: &'a ContactGraph,
-    pub(crate) contacts: &'a [Contact],
+    pub(crate) contacts: &'a [Ends],
     /// By body: whether impulses move it.
     pub(crate) yields: &'a [bool],
 }
@@ -87,7 +87,7 @@ impl Arranger {
 }
 
 impl Colouring {
-    fn colour(&mut self, level: u32, contact: &Contact, yields: &[bool]) -> u8 {
+    fn colour(&mut self, level: u32, contact: &Ends, yields: &[bool]) -> u8 {
         let ends = [contact.first as usize, contact.second as usize];
         let mut used = 0;
         for i in ends {

@@ -1,15 +1,15 @@
 //! Manifolds: those of the eight contacts of a block side by side, with what they carry and what rubs there.
 
+use super::batch::ContactList;
 use super::blocks::{Detail, NO_CONTACT};
 use super::load::Load;
 use super::points::Kind;
 use crate::lanes::{LANES, LaneMask, Lanes, V8};
-use crate::narrow_phase::Contact;
 
 /// Where the rows come from.
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
-    pub(crate) contacts: &'a [Contact],
+    pub(crate) contacts: ContactList<'a>,
     /// By contact.
     pub(crate) loads: &'a [Load],
     /// By body.
@@ -48,8 +48,8 @@ impl<F: Lanes> Manifolds<F> {
         for lane in 0..LANES {
             let padding = detail.source[lane] == NO_CONTACT;
             let k = if padding { detail.source[0] } else { detail.source[lane] } as usize;
-            let (contact, load) = (&source.contacts[k], &source.loads[k]);
-            let manifold = &contact.manifold;
+            let (contact, load) = (&source.contacts.ends[k], &source.loads[k]);
+            let manifold = source.contacts.manifold(k);
             for axis in 0..3 {
                 normal[axis][lane] = manifold.normal[axis];
                 slide[axis][lane] = load.slide[axis];

@@ -29,14 +29,15 @@ mod spring;
 mod standing;
 mod substep;
 mod sweep;
+mod team;
 mod velocities;
 mod warm_start;
 
 mod batch;
 
-pub(crate) use batch::{Batch, is_mesh};
+pub(crate) use batch::{Batch, Ends, is_mesh};
 pub(crate) use flight::fly;
-pub(crate) use islands::Islands;
+pub(crate) use islands::Roots;
 pub(crate) use rest::rest_after_slices;
 pub(crate) use rotation::times_inverse_inertia;
 pub(crate) use spring::pull;

@@ -7,7 +7,6 @@ use super::bodies::Bodies;
 use super::manifolds::{Manifolds, Source};
 use super::points::{Kind, Point, Push, Side};
 use super::sweep::coupling;
-use crate::Material;
 use crate::lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched, recast_mut};
 
 const TINY: f32 = 1e-12;
@@ -71,14 +70,6 @@ fn prepare_lanes<F: Lanes, K: Kind>(
     }
 }
 
-/// Friction is the geometric mean, restitution the larger of the two.
-pub(crate) fn combine(a: &Material, b: &Material) -> Material {
-    Material {
-        friction: (a.friction * b.friction).sqrt(),
-        static_friction: (a.static_friction * b.static_friction).sqrt(),
-        restitution: if a.restitution > b.restitution { a.restitution } else { b.restitution },
-    }
-}
 
 /// One body of each contact.
 struct End<F> {
@@ -151,7 +142,7 @@ fn along<F: Lanes>(axes: &[V8<F>; 3], v: V8<F>) -> V8<F> {
 }
 
 impl<F: Lanes> Ends<F> {
-    /// As [`combine`].
+    /// Friction is the geometric mean, restitution the larger of the two.
     #[inline(always)]
     fn surface(&self) -> Surface<F> {
         let (a, b) = (&self.first, &self.second);

@@ -6,6 +6,7 @@ use super::blocks::Arranged;
 use super::collisions::{Moving, resolve_collisions};
 use super::energy_guard::{EnergyGuard, Guarded};
 use super::impulses::add_substep;
+use super::islands::Islands;
 use super::overlap::overlap_growth;
 use super::points::{Flat, Uneven};
 use super::shock::{propagate_classic, propagate_shock};
@@ -39,9 +40,10 @@ impl Rows {
         remove_momentum(&mut self.uneven.blocks, &self.uneven.details, pushes);
     }
 
-    pub(crate) fn scale_impulses(&mut self, guard: &EnergyGuard, what: Guarded) {
-        guard.scale_impulses(&mut self.flat, what);
-        guard.scale_impulses(&mut self.uneven, what);
+    pub(crate) fn scale_impulses(&mut self, guard: &EnergyGuard, islands: &Islands, what: Guarded) {
+        let Rows { flat, uneven } = self;
+        guard.scale_impulses(islands, (&mut flat.blocks, &mut flat.details), what);
+        guard.scale_impulses(islands, (&mut uneven.blocks, &mut uneven.details), what);
     }
 
     pub(crate) fn sweep(&mut self, velocities: &mut [Row]) {

@@ -8,7 +8,7 @@
 //! place of the gradient. Impulses that this makes pull are put right by the next sweep; the last sweep is a plain one.
 
 use super::blocks::{Block, Detail, Impulses};
-use super::energy_guard::{EnergyGuard, Guarded};
+use super::energy_guard::{EnergyGuard, Guarded, Guarding, per_lane};
 use super::points::Kind;
 use super::sweep::sweep;
 use super::warm_start::{add_momentum, apply_impulses, take_off_momentum};
@@ -20,6 +20,7 @@ const FURTHEST: f64 = 20.0;
 /// Finds what the contacts of hard islands carry.
 pub(crate) struct StandingPass<'a> {
     pub(crate) guard: &'a mut EnergyGuard,
+    pub(crate) at: Guarding<'a>,
     /// Mass-scaled change of velocity that gravity and forces make in a substep, and the dummy's.
     pub(crate) kicks: &'a [Row],
     pub(crate) sweeps: u32,
@@ -45,9 +46,10 @@ impl StandingPass<'_> {
         take_off_momentum(blocks, details);
         let mut velocities = self.kicks.to_vec();
         apply_impulses(blocks, &mut velocities);
-        if self.guard.gains(self.kicks, &velocities, Guarded::Guess) {
-            self.guard.scale_back(self.kicks, &mut velocities);
-            self.guard.scale_blocks(blocks, details, Guarded::Guess);
+        let islands = self.at.islands;
+        if self.guard.gains(self.at, self.kicks, &velocities, Guarded::Guess) {
+            self.guard.scale_back(islands, self.kicks, &mut velocities);
+            self.guard.scale_impulses(islands, (blocks, details), Guarded::Guess);
         }
         let mut last = Solution::of(blocks, &velocities);
         let mut way = last.clone();
@@ -67,12 +69,10 @@ impl StandingPass<'_> {
 
     /// How far each island goes on: to the least kinetic energy on the way, and nowhere if the sweep has raised it.
     fn lengths(&self, velocities: &[Row], last: &Solution, way: &Solution) -> Vec<f32> {
-        let n = self.guard.islands();
+        let n = self.at.islands.count() + 1;
         let (mut along, mut square, mut rise) = (vec![0.0f64; n], vec![0.0f64; n], vec![0.0f64; n]);
-        for i in 0..self.kicks.len() - 2 {
-            let Some(island) = self.guard.island_of(i) else {
-                continue;
-            };
+        for (i, &island) in self.at.islands.numbers().iter().enumerate() {
+            let island = island as usize;
             let (u, d, before) = (&velocities[i].0, &way.velocities[i].0, &last.velocities[i].0);
             let (mut ud, mut dd, mut gain) = (0.0f32, 0.0f32, 0.0f32);
             for k in 0..6 {
@@ -98,16 +98,14 @@ impl StandingPass<'_> {
         velocities: &mut [Row],
         (blocks, details): (&mut [Block<Portable, K>], &[Detail<Portable>]),
     ) {
-        for i in 0..self.kicks.len() - 2 {
-            let Some(island) = self.guard.island_of(i) else {
-                continue;
-            };
+        for (i, &island) in self.at.islands.numbers().iter().enumerate() {
+            let island = island as usize;
             for k in 0..6 {
                 velocities[i].0[k] += lengths[island] * way.velocities[i].0[k];
             }
         }
         for ((block, detail), way) in blocks.iter_mut().zip(details).zip(&way.impulses) {
-            let factor = self.guard.per_lane(block, detail, lengths);
+            let factor = per_lane(self.at.islands, block, detail, lengths);
             for q in 0..4 {
                 block.impulses[q] += way.points[q] * factor;
             }
