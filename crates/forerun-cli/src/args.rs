@@ -212,6 +212,9 @@ pub(crate) struct ValidateArgs {
     /// Exit with code 1 when a figure misses its limit
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Print the result as JSON and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

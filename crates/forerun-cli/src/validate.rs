@@ -48,6 +48,17 @@ impl Verdict {
         matches!(self, Verdict::Pass | Verdict::Miss)
     }
 
+    /// The word in the JSON object.
+    pub(crate) fn key(self) -> &'static str {
+        match self {
+            Verdict::Pass => "pass",
+            Verdict::Miss => "miss",
+            Verdict::Reported => "reported",
+            Verdict::Timed { holds: true } => "in_time",
+            Verdict::Timed { holds: false } => "too_slow",
+        }
+    }
+
     /// The word in the table.
     pub(crate) fn word(self) -> &'static str {
         match self {

@@ -252,6 +252,18 @@ fn validate_prints_a_table_and_ends_well() {
 }
 
 #[test]
+fn validate_prints_one_json_object() {
+    let report = json(&forerun(&["validate", "free_fall", "arch", "--json"]));
+    let figures = report["figures"].as_array().expect("a list");
+    let count = |verdict: &str| figures.iter().filter(|figure| figure["verdict"] == verdict).count();
+    assert!(figures.iter().all(|figure| figure["value"].is_number() && figure["limit"].is_string()));
+    assert_eq!(figures[0]["case"], "free_fall");
+    assert_eq!(report["passed"], count("pass"));
+    assert_eq!(report["judged"], count("pass") + count("miss"));
+    assert_eq!(report["not_run"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
 fn an_experiment_puts_the_drivers_beside_each_other() {
     let out = folder("experiment");
     let output = forerun(&["experiment", "stack", "--seconds", "0.3", "--out", out.to_str().expect("plain")]);

@@ -1,47 +1,89 @@
-//! Validate: runs the cases and prints their figures as a Markdown table.
+//! Validate: runs the cases; a Markdown table of their figures for people, one JSON object for programs.
+
+use indicatif::ProgressBar;
+use serde::Serialize;
 
 use crate::args::ValidateArgs;
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{print, print_json};
 use crate::progress;
-use crate::validate::{CASES, Case, Verdict};
+use crate::validate::{CASES, Case, Figure, Verdict};
+
+/// The result; the fields are those of `validate --json`.
+#[derive(Debug, Default, Serialize)]
+struct ValidateReport {
+    figures: Vec<FigureReport>,
+    /// How many of the figures have a limit that decides.
+    judged: usize,
+    /// How many of those hold it.
+    passed: usize,
+    /// Cases that were left out because they take minutes.
+    not_run: Vec<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct FigureReport {
+    case: &'static str,
+    figure: String,
+    value: f64,
+    /// What is asked of the value, in words.
+    limit: String,
+    /// `pass`, `miss`, `reported` (it has no limit), or, of a time, `in_time` or `too_slow` on this machine.
+    verdict: &'static str,
+}
 
 /// `forerun validate`.
 pub(crate) fn run(args: &ValidateArgs) -> Result<(), Failure> {
     let chosen = choose(&args.cases)?;
-    print("| case | figure | value | limit | |")?;
-    print("|---|---|---:|---|---|")?;
+    let mut report = ValidateReport::default();
+    if args.cases.is_empty() {
+        report.not_run = CASES.iter().filter(|case| case.long).map(|case| case.id).collect();
+    }
+    if !args.json {
+        print("| case | figure | value | limit | |")?;
+        print("|---|---|---:|---|---|")?;
+    }
     let bar = progress::bar(chosen.len() as u64, "cases");
-    let (mut figures, mut misses) = (0_usize, 0_usize);
     for case in chosen {
         bar.set_message(case.id);
         for figure in (case.run)() {
-            // Above the bar, not through it.
-            bar.suspend(|| {
-                print(&format!(
-                    "| {} | {} | {} | {} | {} |",
-                    case.id,
-                    figure.name,
-                    figure.digits(),
-                    figure.limit,
-                    figure.verdict.word()
-                ))
-            })?;
-            figures += usize::from(figure.verdict.counts());
-            misses += usize::from(figure.verdict == Verdict::Miss);
+            if !args.json {
+                print_row(&bar, case.id, &figure)?;
+            }
+            report.add(case.id, figure);
         }
         bar.inc(1);
     }
     bar.finish_and_clear();
-    print(&format!("\n{} of {figures} figures pass", figures - misses))?;
-    if args.cases.is_empty() {
-        let long: Vec<&str> = CASES.iter().filter(|case| case.long).map(|case| case.id).collect();
-        print(&format!("not run, as they take minutes: {}", long.join(", ")))?;
-    }
-    if args.strict && misses > 0 {
-        return Err(Failure::Check(format!("{misses} of {figures} figures miss their limit")));
+    if args.json { print_json(&report) } else { report.print_end() }?;
+    if args.strict && report.passed < report.judged {
+        let (misses, judged) = (report.judged - report.passed, report.judged);
+        return Err(Failure::Check(format!("{misses} of {judged} figures miss their limit")));
     }
     Ok(())
+}
+
+impl ValidateReport {
+    fn add(&mut self, case: &'static str, figure: Figure) {
+        self.judged += usize::from(figure.verdict.counts());
+        self.passed += usize::from(figure.verdict == Verdict::Pass);
+        let Figure { name, value, limit, verdict } = figure;
+        self.figures.push(FigureReport { case, figure: name, value, limit, verdict: verdict.key() });
+    }
+
+    fn print_end(&self) -> Result<(), Failure> {
+        print(&format!("\n{} of {} figures pass", self.passed, self.judged))?;
+        if self.not_run.is_empty() {
+            return Ok(());
+        }
+        print(&format!("not run, as they take minutes: {}", self.not_run.join(", ")))
+    }
+}
+
+/// Prints a figure above the bar, not through it.
+fn print_row(bar: &ProgressBar, case: &str, figure: &Figure) -> Result<(), Failure> {
+    let (digits, verdict) = (figure.digits(), figure.verdict.word());
+    bar.suspend(|| print(&format!("| {case} | {} | {digits} | {} | {verdict} |", figure.name, figure.limit)))
 }
 
 fn choose(ids: &[String]) -> Result<Vec<&'static Case>, Failure> {

@@ -8,14 +8,18 @@ mod block_on_slope;
 mod bouncing_balls;
 mod capstone;
 mod card_house;
+mod degenerate;
 mod euler_disc;
 mod free_fall;
 mod free_rotation;
+mod friction_directions;
 mod kapla;
 mod newton_chain;
 mod off_centre_impact;
 mod plank;
+mod rattleback;
 mod rolling_down;
+mod rolling_plate;
 mod sampling;
 mod spinning_ball;
 mod timeline_bits;
@@ -25,17 +29,22 @@ mod timeline_cutoff;
 mod timeline_memory;
 mod timeline_scrub;
 mod towers;
+mod turntable;
 
 /// All cases, in the order in which they are run.
 pub(crate) const CASES: &[Case] = &[
     short("free_fall", free_fall::run),
     short("block_on_slope", block_on_slope::run),
+    short("rolling_plate", rolling_plate::run),
     short("rolling_down", rolling_down::run),
+    short("friction_directions", friction_directions::run),
     short("bouncing_balls", bouncing_balls::run),
     short("free_rotation", free_rotation::run),
     short("off_centre_impact", off_centre_impact::run),
     short("spinning_ball", spinning_ball::run),
     short("euler_disc", euler_disc::run),
+    short("rattleback", rattleback::run),
+    short("turntable", turntable::run),
     short("newton_chain", newton_chain::run),
     short("kapla", kapla::run),
     short("ball_cube", ball_cube::run),
@@ -45,6 +54,7 @@ pub(crate) const CASES: &[Case] = &[
     short("arch", arch::run),
     short("capstone", capstone::run),
     short("plank", plank::run),
+    short("degenerate", degenerate::run),
     long("kapla_long", kapla::run_long),
     short("sampling", sampling::run),
     short("timeline_cutoff", timeline_cutoff::run),

@@ -4,6 +4,7 @@
 //! and every product of two edges (the separating axes), found by brute force.
 
 use forerun::dynamics::{Body, BodyState, World};
+use forerun::geometry::Pose;
 use forerun::geometry::shape::{Hull, Shape};
 
 use super::lab::{cross, dot, doubled, length, rotated};
@@ -17,7 +18,8 @@ enum Probe {
     /// Everything at or below y = 0.
     Ground,
     Ball(f64),
-    Solid(Solid),
+    /// One convex solid, or the parts of a compound.
+    Solids(Vec<Solid>),
     /// Another shape: not looked at.
     Unknown,
 }
@@ -38,7 +40,12 @@ pub(crate) struct Gauge {
 
 impl Gauge {
     pub(crate) fn new(world: &World) -> Gauge {
-        Gauge { bodies: world.bodies().iter().map(|body| (body.clone(), Probe::of(&body.shape))).collect() }
+        Gauge::with_shapes(world, world.bodies().iter().map(|body| &body.shape))
+    }
+
+    /// Measures the bodies of the world as if each had another shape: meshes by the solids that they are made of.
+    pub(crate) fn with_shapes<'a>(world: &World, shapes: impl Iterator<Item = &'a Shape>) -> Gauge {
+        Gauge { bodies: world.bodies().iter().cloned().zip(shapes.map(Probe::of)).collect() }
     }
 
     /// The deepest overlap of two bodies of which at least one is dynamic. Metres, 0 when nothing overlaps.
@@ -66,7 +73,7 @@ struct Placed<'a> {
     centre: [f64; 3],
     radius: f64,
     /// Corners, normals and edges in the world.
-    solid: Solid,
+    solids: Vec<Solid>,
 }
 
 impl Probe {
@@ -74,8 +81,9 @@ impl Probe {
         match shape {
             Shape::HalfSpace => Probe::Ground,
             Shape::Sphere(sphere) => Probe::Ball(f64::from(sphere.radius)),
-            Shape::Cuboid(cuboid) => Probe::Solid(Solid::cuboid(doubled(cuboid.half_extents))),
-            Shape::Hull(hull) => Probe::Solid(Solid::hull(hull)),
+            Shape::Cuboid(cuboid) => Probe::Solids(vec![Solid::cuboid(doubled(cuboid.half_extents))]),
+            Shape::Hull(hull) => Probe::Solids(vec![Solid::hull(hull)]),
+            Shape::Compound(compound) => Probe::Solids(compound.parts.iter().flat_map(Solid::part).collect()),
             _ => Probe::Unknown,
         }
     }
@@ -84,13 +92,16 @@ impl Probe {
         let pose = body.own_pose(state);
         let centre = doubled(pose.position);
         let q = pose.rotation.to_array().map(f64::from);
-        let (radius, solid) = match self {
-            Probe::Ground => (f64::INFINITY, Solid::default()),
-            Probe::Ball(radius) => (*radius, Solid::default()),
-            Probe::Solid(solid) => (solid.radius, solid.placed(q, centre)),
-            Probe::Unknown => (0.0, Solid::default()),
+        let (radius, solids) = match self {
+            Probe::Ground => (f64::INFINITY, Vec::new()),
+            Probe::Ball(radius) => (*radius, Vec::new()),
+            Probe::Solids(solids) => {
+                let radius = solids.iter().map(|solid| solid.radius).fold(0.0, f64::max);
+                (radius, solids.iter().map(|solid| solid.placed(q, centre)).collect())
+            }
+            Probe::Unknown => (0.0, Vec::new()),
         };
-        Placed { probe: self, dynamic: body.is_dynamic(), centre, radius, solid }
+        Placed { probe: self, dynamic: body.is_dynamic(), centre, radius, solids }
     }
 }
 
@@ -102,7 +113,10 @@ impl Placed<'_> {
             (Probe::Ball(r), Probe::Ball(s)) => {
                 r + s - length([0, 1, 2].map(|k| self.centre[k] - other.centre[k]))
             }
-            (Probe::Solid(_), Probe::Solid(_)) => self.solid.depth(&other.solid),
+            (Probe::Solids(_), Probe::Solids(_)) => {
+                let pairs = self.solids.iter().flat_map(|a| other.solids.iter().map(move |b| a.depth(b)));
+                pairs.fold(0.0, f64::max)
+            }
             _ => 0.0,
         }
         .max(0.0)
@@ -111,7 +125,10 @@ impl Placed<'_> {
     fn below_ground(&self) -> f64 {
         match self.probe {
             Probe::Ball(radius) => radius - self.centre[1],
-            _ => self.solid.corners.iter().map(|corner| -corner[1]).fold(0.0, f64::max),
+            _ => {
+                let corners = self.solids.iter().flat_map(|solid| &solid.corners);
+                corners.map(|corner| -corner[1]).fold(0.0, f64::max)
+            }
         }
     }
 }
@@ -133,6 +150,18 @@ impl Solid {
         let (edges, normals) = (different(edges), different(hull.faces.iter().map(|f| doubled(f.normal))));
         let radius = corners.iter().map(|corner| length(*corner)).fold(0.0, f64::max);
         Solid { corners, normals, edges, radius }
+    }
+
+    /// A part of a compound, in the frame of the compound; none if it is neither a box nor a hull.
+    fn part((pose, shape): &(Pose, Shape)) -> Option<Solid> {
+        let solid = match shape {
+            Shape::Cuboid(cuboid) => Solid::cuboid(doubled(cuboid.half_extents)),
+            Shape::Hull(hull) => Solid::hull(hull),
+            _ => return None,
+        };
+        let mut placed = solid.placed(pose.rotation.to_array().map(f64::from), doubled(pose.position));
+        placed.radius = placed.corners.iter().map(|corner| length(*corner)).fold(0.0, f64::max);
+        Some(placed)
     }
 
     fn placed(&self, q: [f64; 4], centre: [f64; 3]) -> Solid {

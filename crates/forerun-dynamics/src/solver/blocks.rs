@@ -3,9 +3,9 @@
 //! Contacts are ordered by level, then by colour: within a colour no dynamic body appears twice, so that the lanes of a block never write the
 //! same body. The colour of a contact depends on its island alone; which lane it lands in does not change its result.
 
+use super::batch::Ends;
 use super::contact_graph::ContactGraph;
 use crate::lanes::{LANES, Lanes, Portable, Record, V8};
-use crate::narrow_phase::Contact;
 
 /// Padding: a lane without a contact.
 pub(crate) const NO_CONTACT: u32 = u32::MAX;
@@ -151,7 +151,7 @@ pub(crate) fn arrange(
     chosen: &[u32],
     yields: &[bool],
     graph: &ContactGraph,
-    contacts: &[Contact],
+    contacts: &[Ends],
 ) -> Vec<Block<Portable>> {
     let count = yields.len();
     let by_level = sorted_by_level(chosen, graph, contacts);
@@ -172,7 +172,7 @@ pub(crate) fn arrange(
 }
 
 /// Indices of the contacts by level; those of one level in their own order.
-fn sorted_by_level(chosen: &[u32], graph: &ContactGraph, contacts: &[Contact]) -> Vec<u32> {
+fn sorted_by_level(chosen: &[u32], graph: &ContactGraph, contacts: &[Ends]) -> Vec<u32> {
     let levels: Vec<u32> = chosen.iter().map(|&k| graph.contact_level(&contacts[k as usize])).collect();
     let top = levels.iter().copied().max().unwrap_or(0) as usize;
     let mut starts = vec![0u32; top + 2];
@@ -198,7 +198,7 @@ struct Colouring {
 }
 
 impl Colouring {
-    fn colour(&mut self, level: u32, contact: &Contact, yields: &[bool]) -> u8 {
+    fn colour(&mut self, level: u32, contact: &Ends, yields: &[bool]) -> u8 {
         let ends = [contact.first as usize, contact.second as usize];
         let mut used = 0;
         for i in ends.into_iter().filter(|&i| yields[i]) {
@@ -220,7 +220,7 @@ impl Colouring {
 fn place(
     here: &[u32],
     colours: &[u8],
-    (contacts, yields): (&[Contact], &[bool]),
+    (contacts, yields): (&[Ends], &[bool]),
     blocks: &mut Vec<Block<Portable>>,
 ) {
     let dummy = yields.len() as u32;

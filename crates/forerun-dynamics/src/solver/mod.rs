@@ -28,9 +28,9 @@ mod warm_start;
 
 mod batch;
 
-pub(crate) use batch::{Batch, is_mesh};
+pub(crate) use batch::{Batch, Ends, is_mesh};
 pub(crate) use flight::fly;
-pub(crate) use islands::Islands;
+pub(crate) use islands::Roots;
 pub(crate) use rest::rest_after_slices;
 pub(crate) use rotation::times_inverse_inertia;
 pub(crate) use spring::pull;

@@ -2,11 +2,11 @@
 
 use forerun_geometry::Vec3;
 
+use super::batch::ContactList;
 use super::blocks::{Block, CentreRow, Contacts, FrictionRows, NO_CONTACT, PointRow};
 use super::bodies::Bodies;
 use super::load::Load;
 use crate::lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched, recast};
-use crate::narrow_phase::Contact;
 use crate::{Material, Member};
 
 const TINY: f32 = 1e-12;
@@ -22,7 +22,7 @@ const RISE_MIN: f32 = 0.2;
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     pub(crate) members: &'a [Member<'a>],
-    pub(crate) contacts: &'a [Contact],
+    pub(crate) contacts: ContactList<'a>,
     pub(crate) loads: &'a [Load],
     pub(crate) levels: &'a [u32],
     pub(crate) up: Vec3,
@@ -81,8 +81,8 @@ fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
         if k == NO_CONTACT {
             continue;
         }
-        let contact = &source.contacts[k as usize];
-        let m = &contact.manifold;
+        let contact = &source.contacts.ends[k as usize];
+        let m = source.contacts.manifold(k as usize);
         for (axis, value) in m.normal.to_array().into_iter().enumerate() {
             lanes.normal[axis][lane] = value;
         }

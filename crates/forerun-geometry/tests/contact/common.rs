@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use forerun_geometry::contact::contact_manifolds;
-use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Hull, HullEdge, HullFace, Sphere};
+use forerun_geometry::shape::{
+    Capsule, Cuboid, Cylinder, Hull, HullEdge, HullFace, Sphere, hull_inner_radius,
+};
 use forerun_geometry::{Manifold, Motion, Placed, Pose, Quat, Shape, Vec3};
 
 pub(crate) fn sphere(radius: f32) -> Shape {
@@ -42,6 +44,7 @@ pub(crate) fn hull(points: &[Vec3]) -> Shape {
         }
     }
     add_edges(&mut made);
+    made.inner_radius = hull_inner_radius(&made.faces, made.centre);
     Shape::Hull(Arc::new(made))
 }
 
