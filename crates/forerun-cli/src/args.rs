@@ -165,6 +165,19 @@ pub(crate) struct CheckArgs {
     pub(crate) json: bool,
 }
 
+/// In what form kernels are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum InstructionsArg {
+    /// Plain arrays, as on any processor
+    Portable,
+    /// Four numbers at a time, twice
+    Sse2,
+    /// Eight numbers at a time
+    Avx2,
+    /// Eight at a time, with more registers
+    Avx512,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct BenchArgs {
     #[arg(required = true, help = SCENE_HELP)]
@@ -181,6 +194,9 @@ pub(crate) struct BenchArgs {
     /// Let nothing come to rest, to compare with engines whose sleep is off
     #[arg(long)]
     pub(crate) awake: bool,
+    /// Processor instructions that the kernels may use at most; the results are the same [default: the fastest there are]
+    #[arg(long, value_enum)]
+    pub(crate) instructions: Option<InstructionsArg>,
     /// Draw where the time goes, by stage, to FILE as SVG and as PNG, whatever its ending
     #[arg(long, value_name = "FILE")]
     pub(crate) chart: Option<PathBuf>,

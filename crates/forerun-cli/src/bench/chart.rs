@@ -75,10 +75,7 @@ fn draw_bars<DB: DrawingBackend>(
         .margin_right(30)
         .x_label_area_size(54)
         .y_label_area_size(220)
-        .build_cartesian_2d(
-            0.0..round_up(LEGEND_ROOM * longest),
-            (0..bars.len().max(1) - 1).into_segmented(),
-        )?;
+        .build_cartesian_2d(0.0..round_up(LEGEND_ROOM * longest), (0..bars.len()).into_segmented())?;
     let name = |place: &SegmentValue<usize>| match place {
         // The first scene on top.
         SegmentValue::CenterOf(i) => {

@@ -1,7 +1,7 @@
 //! Measures the step of one world: time per stage, and guards on the quality that the time was paid for.
 
 use cpu_time::ThreadTime;
-use forerun::dynamics::{Observer, Stage, Unobserved, World, meter};
+use forerun::dynamics::{Observer, Stage, Unobserved, World, lanes, meter};
 use forerun::{Clock, Threads};
 use serde::Serialize;
 
@@ -31,6 +31,8 @@ pub(crate) struct Measurement {
     /// Frames that passed before the first measured one.
     pub(crate) settle: u32,
     pub(crate) threads: u16,
+    /// The processor instructions that the kernels used.
+    pub(crate) instructions: String,
     /// The first measured step, which the others leave out. Milliseconds.
     pub(crate) first_step_ms: f64,
     /// CPU time of a step on one thread, wall time on several.
@@ -115,6 +117,7 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
         frames,
         settle,
         threads: thread_count,
+        instructions: lanes::in_use().to_string(),
         first_step_ms: times_ms[0],
         step_ms: Spread::of(later),
         stage_ms: profile.mean_ms(frames),

@@ -2,10 +2,11 @@
 
 use std::num::NonZeroU16;
 
+use forerun::dynamics::lanes::{self, InstructionSet};
 use forerun::{Scene, Threads, TimelineSettings, timeline_of, world_of};
 use serde::Serialize;
 
-use crate::args::BenchArgs;
+use crate::args::{BenchArgs, InstructionsArg};
 use crate::bench::{Measurement, Run, add_storage, draw_stages, measure};
 use crate::failure::Failure;
 use crate::output::{print, print_json};
@@ -18,6 +19,9 @@ struct BenchReport {
 
 /// `forerun bench`.
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
+    if let Some(most) = args.instructions {
+        limit_instructions(most)?;
+    }
     // The argument's range begins at 1.
     let count = NonZeroU16::new(args.threads).unwrap_or(NonZeroU16::MIN);
     let threads = Threads::exactly(count)?;
@@ -43,7 +47,22 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     if args.json { print_json(&BenchReport { scenes: measured }) } else { print_tables(&measured) }
 }
 
+fn limit_instructions(most: InstructionsArg) -> Result<(), Failure> {
+    let most = match most {
+        InstructionsArg::Portable => InstructionSet::Portable,
+        InstructionsArg::Sse2 => InstructionSet::Sse2,
+        InstructionsArg::Avx2 => InstructionSet::Avx2,
+        InstructionsArg::Avx512 => InstructionSet::Avx512,
+    };
+    let chosen = lanes::limit_to(most);
+    if chosen == most {
+        return Ok(());
+    }
+    Err(Failure::Input(format!("--instructions: this processor has no {most}; ask for {chosen} or less")))
+}
+
 fn print_tables(measured: &[Measurement]) -> Result<(), Failure> {
+    print(&format!("kernels: {}\n", lanes::in_use()))?;
     print(
         "| scene | bodies | frames | threads | mean ms | median ms | p99 ms | max ms | first ms | first/mean | body-steps/s | ns/body |",
     )?;
