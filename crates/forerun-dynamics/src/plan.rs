@@ -254,7 +254,12 @@ impl Trait {
 fn fastest(contact: &Contact, a: &Trait, b: &Trait) -> f32 {
     /// For rounding, and points a little outside of a shape.
     const SLACK: f32 = 1.5;
-    let apart = contact.manifold.points().iter().fold(0.0, |most, p| f32::max(most, p.separation));
+    let mut apart = 0.0;
+    for point in contact.manifold.points() {
+        if point.separation > apart {
+            apart = point.separation;
+        }
+    }
     let of = |t: &Trait| t.speed + if t.spin > 0.0 { t.spin * (t.radius + apart) } else { 0.0 };
     SLACK * (of(a) + of(b))
 }
