@@ -15,7 +15,7 @@ use super::load::{LoadPass, Loads};
 use super::manifolds::Source;
 use super::positions::integrate_positions;
 use super::prepare::{Common, prepare};
-use super::rest::{Ending, Resting};
+use super::rest::{Ending, RestScratch, Resting};
 use super::rows::{OnlyHard, Rows};
 use super::standing::StandingPass;
 use super::substep::{displace, fall, note_pushes};
@@ -87,9 +87,18 @@ pub(crate) struct Batch<'a> {
     arranger: Arranger,
     guard: EnergyGuard,
     endings: Vec<Ending>,
+    rest: RestScratch,
     bounces: bool,
     /// By island: whether a moving kinematic body touches it.
     driven: Vec<bool>,
+    /// By island: the weight, and what of it the load pass fails to place.
+    weights: Vec<[f64; 2]>,
+    /// By island: see [`Batch::classify`].
+    classes: Vec<u8>,
+    /// By class: the contacts.
+    chosen: [Vec<u32>; 4],
+    /// By contact: by how much the solver expects it to lie deeper at the end of the frame, where that may be cut finer. Metres.
+    pub(crate) overlap_growth: Vec<f32>,
 }
 
 impl<'a> Batch<'a> {
@@ -124,8 +133,13 @@ impl<'a> Batch<'a> {
             arranger: self.arranger,
             guard: self.guard,
             endings: self.endings,
+            rest: self.rest,
             bounces: false,
             driven: self.driven,
+            weights: self.weights,
+            classes: self.classes,
+            chosen: self.chosen,
+            overlap_growth: self.overlap_growth,
         }
     }
 
@@ -176,10 +190,11 @@ impl<'a> Batch<'a> {
 
     /// Finds a lane for every contact: flat islands apart from uneven ones, easy ones before hard ones.
     fn arrange(&mut self) {
-        let class = self.classes();
-        let mut chosen: [Vec<u32>; 4] = Default::default();
+        self.classify();
+        let mut chosen = std::mem::take(&mut self.chosen);
+        chosen.iter_mut().for_each(Vec::clear);
         for (k, ends) in self.ends.iter().enumerate() {
-            chosen[class[self.island_of(ends)]].push(k as u32);
+            chosen[usize::from(self.classes[self.island_of(ends)])].push(k as u32);
         }
         let order = Order { graph: &self.graph, contacts: &self.ends, yields: &self.dynamic };
         let (arranger, Rows { flat, uneven }) = (&mut self.arranger, &mut self.rows);
@@ -195,29 +210,29 @@ impl<'a> Batch<'a> {
         uneven.easy = uneven.count;
         arranger.add(uneven_hard, &order, uneven);
         uneven.finish();
+        self.chosen = chosen;
     }
 
-    /// By island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps; 2 more where some
-    /// manifold has points that push different ways, which only those of meshes do.
-    fn classes(&self) -> Vec<usize> {
-        let mut sums = vec![(0.0f64, 0.0f64); self.islands.count() + 1];
+    /// Finds the class of each island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more
+    /// sweeps; 2 more where some manifold has points that push different ways, which only those of meshes do.
+    fn classify(&mut self) {
+        fill(&mut self.weights, self.islands.count() + 1, [0.0; 2]);
         for (i, strain) in self.loads.strain.iter().enumerate() {
-            let sum = &mut sums[self.islands.root(i)];
-            sum.0 += f64::from(strain.weight);
-            sum.1 += f64::from(strain.lost);
+            let [weight, lost] = &mut self.weights[self.islands.root(i)];
+            *weight += f64::from(strain.weight);
+            *lost += f64::from(strain.lost);
         }
-        let hard = |(weight, lost)| lost > HARD_PART * weight;
-        let mut class: Vec<usize> = sums.into_iter().map(|sums| usize::from(hard(sums))).collect();
+        self.classes.clear();
+        self.classes.extend(self.weights.iter().map(|[weight, lost]| u8::from(*lost > HARD_PART * weight)));
         if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
             for (k, ends) in self.ends.iter().enumerate() {
-                let manifold = self.contacts().manifold(k);
-                let points = &manifold.points[..manifold.count as usize];
+                let points = self.contacts().manifold(k).points();
                 if points.iter().any(|p| p.normal != points[0].normal) {
-                    class[self.island_of(ends)] |= 2;
+                    let island = self.island_of(ends);
+                    self.classes[island] |= 2;
                 }
             }
         }
-        class
     }
 
     /// The number of the island that a contact belongs to.
@@ -317,20 +332,21 @@ impl<'a> Batch<'a> {
             driven: &self.driven,
             environment,
         };
-        at.find_endings(&self.bodies.spins, &mut self.endings);
+        at.find_endings(&mut self.endings);
         integrate_positions(members, &self.bodies, environment, &mut self.next);
-        at.settle(&mut self.next, &self.endings);
+        at.settle(&mut self.next, &self.endings, &mut self.rest);
+        if environment.settings.slices_max > 1 {
+            self.find_overlap_growth();
+        }
     }
 
-    /// For each contact: by how much the solver expects it to lie deeper at the end of the frame, or 0 if all of them by less than [`SHALLOW_M`]. Metres.
-    pub(crate) fn overlap_growth(&self) -> Vec<f32> {
-        let mut growth = vec![0.0; self.ends.len()];
-        if self.least_gap >= -SHALLOW_M && self.least_gap + self.environment.settings.overlap_allowed_m >= 0.0
-        {
-            return growth;
+    /// For each contact: by how much the solver expects it to lie deeper at the end of the frame, or 0 if all of them by less than [`SHALLOW_M`].
+    fn find_overlap_growth(&mut self) {
+        fill(&mut self.overlap_growth, self.ends.len(), 0.0);
+        let least = self.least_gap;
+        if least < -SHALLOW_M || least + self.environment.settings.overlap_allowed_m < 0.0 {
+            self.rows.overlap_growth(&self.bodies.displacements, &mut self.overlap_growth);
         }
-        self.rows.overlap_growth(&self.bodies.displacements, &mut growth);
-        growth
     }
 }
 
