@@ -229,16 +229,28 @@ pub(crate) unsafe trait Record {
 
 /// The same records, their numbers read in another form.
 #[inline(always)]
-pub(crate) fn recast<F: Lanes, R: Record>(records: &mut [R::Of<Portable>]) -> &mut [R::Of<F>] {
-    const {
-        assert!(size_of::<R::Of<Portable>>() == size_of::<R::Of<F>>());
-        assert!(align_of::<R::Of<Portable>>() == align_of::<R::Of<F>>());
-    }
+pub(crate) fn recast<F: Lanes, R: Record>(records: &[R::Of<Portable>]) -> &[R::Of<F>] {
+    const { assert_alike::<R::Of<Portable>, R::Of<F>>() };
     // SAFETY: `Record` promises the same layout, `Lanes` that every bit pattern is valid.
+    #[allow(unsafe_code, reason = "see above")]
+    unsafe {
+        std::slice::from_raw_parts(records.as_ptr().cast(), records.len())
+    }
+}
+
+/// As [`recast`], to be changed.
+#[inline(always)]
+pub(crate) fn recast_mut<F: Lanes, R: Record>(records: &mut [R::Of<Portable>]) -> &mut [R::Of<F>] {
+    const { assert_alike::<R::Of<Portable>, R::Of<F>>() };
+    // SAFETY: as in `recast`.
     #[allow(unsafe_code, reason = "see above")]
     unsafe {
         std::slice::from_raw_parts_mut(records.as_mut_ptr().cast(), records.len())
     }
+}
+
+const fn assert_alike<A, B>() {
+    assert!(size_of::<A>() == size_of::<B>() && align_of::<A>() == align_of::<B>());
 }
 
 /// Defines a function that runs the given kernel in the fastest form that may be used.

@@ -4,22 +4,22 @@
 
 use forerun_geometry::{Manifold, Shape, Vec3};
 
-use super::blocks::{Block, arrange};
+use super::arrange::{Arranger, Order};
 use super::bodies::Bodies;
-use super::collisions::{Moving, resolve_collisions};
+use super::collisions::Moving;
 use super::contact_graph::ContactGraph;
-use super::impulses::{ImpulseSums, add_substep};
+use super::energy_guard::{EnergyGuard, Guarded, Guarding};
+use super::impulses::ImpulseSums;
 use super::islands::Islands;
 use super::load::{LoadPass, Loads};
+use super::manifolds::Source;
 use super::positions::moved;
-use super::prepare::{Source, prepare};
+use super::prepare::{Common, prepare};
 use super::rest::{Ending, Resting};
-use super::shock::{propagate_classic, propagate_shock};
+use super::rows::{OnlyHard, Rows};
 use super::standing::StandingPass;
-use super::sweep::{relax, sweep};
+use super::substep::{displace, fall, note_pushes};
 use super::velocities::integrate_velocities;
-use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
-use crate::lanes::{Portable, Row};
 use crate::narrow_phase::Contact;
 use crate::scratch::{emptied, fill};
 use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
@@ -78,9 +78,9 @@ pub(crate) struct Batch<'a> {
     dynamic: Vec<bool>,
     graph: ContactGraph,
     loads: Loads,
-    /// First those of easy islands, then those of hard ones.
-    blocks: Vec<Block<Portable>>,
-    easy_blocks: usize,
+    rows: Rows,
+    arranger: Arranger,
+    guard: EnergyGuard,
     spins: Vec<Vec3>,
     endings: Vec<Ending>,
     bounces: bool,
@@ -115,8 +115,9 @@ impl<'a> Batch<'a> {
             dynamic: self.dynamic,
             graph: self.graph,
             loads: self.loads,
-            blocks: self.blocks,
-            easy_blocks: 0,
+            rows: self.rows,
+            arranger: self.arranger,
+            guard: self.guard,
             spins: self.spins,
             endings: self.endings,
             bounces: false,
@@ -157,84 +158,110 @@ impl<'a> Batch<'a> {
             substep_seconds: self.substep_seconds(),
         }
         .run(&mut self.loads);
-        let (easy, hard) = self.easy_and_hard();
-        self.blocks = arrange(&easy, &self.dynamic, &self.graph, &self.ends);
-        self.easy_blocks = self.blocks.len();
-        if !hard.is_empty() {
-            self.blocks.append(&mut arrange(&hard, &self.dynamic, &self.graph, &self.ends));
-        }
+        self.arrange();
         let gravity = self.environment.gravity;
-        let source = Source {
-            members: &self.members,
-            contacts,
-            loads: &self.loads.of_contact,
-            levels: self.graph.levels(),
+        let contacts = ContactList { ends: &self.ends, found: self.found };
+        let source = Source { contacts, loads: &self.loads.of_contact, levels: self.graph.levels() };
+        let common = Common {
             up: if gravity == Vec3::ZERO { Vec3::ZERO } else { -gravity.normalize() },
             shock_yield: self.environment.settings.shock_yield,
+            substep_seconds: self.substep_seconds(),
         };
-        prepare(&mut self.blocks, &self.bodies, &source);
+        let Rows { flat, uneven } = &mut self.rows;
+        prepare(&mut flat.blocks, &mut flat.details, &self.bodies, &source, &common);
+        prepare(&mut uneven.blocks, &mut uneven.details, &self.bodies, &source, &common);
     }
 
-    /// Contacts of islands whose weight the load pass places, and of those where it fails (heaps, arches, wedged bodies), so that they need more
-    /// sweeps.
-    fn easy_and_hard(&self) -> (Vec<u32>, Vec<u32>) {
+    /// Finds a lane for every contact: flat islands apart from uneven ones, easy ones before hard ones.
+    fn arrange(&mut self) {
+        let class = self.classes();
+        let mut chosen: [Vec<u32>; 4] = Default::default();
+        for (k, ends) in self.ends.iter().enumerate() {
+            chosen[class[self.island_of(ends)]].push(k as u32);
+        }
+        let order = Order { graph: &self.graph, contacts: &self.ends, yields: &self.dynamic };
+        let (arranger, Rows { flat, uneven }) = (&mut self.arranger, &mut self.rows);
+        let [flat_easy, flat_hard, uneven_easy, uneven_hard] = &chosen;
+        arranger.begin(self.members.len());
+        flat.clear();
+        arranger.add(flat_easy, &order, flat);
+        flat.easy = flat.count;
+        arranger.add(flat_hard, &order, flat);
+        flat.finish();
+        uneven.clear();
+        arranger.add(uneven_easy, &order, uneven);
+        uneven.easy = uneven.count;
+        arranger.add(uneven_hard, &order, uneven);
+        uneven.finish();
+    }
+
+    /// By island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps; 2 more where some
+    /// manifold has points that push different ways, which only those of meshes do.
+    fn classes(&self) -> Vec<usize> {
         let mut sums = vec![(0.0f64, 0.0f64); self.islands.count() + 1];
         for (i, strain) in self.loads.strain.iter().enumerate() {
             let sum = &mut sums[self.islands.root(i)];
             sum.0 += f64::from(strain.weight);
             sum.1 += f64::from(strain.lost);
         }
-        let hard = |&k: &u32| {
-            let Ends { first, second, .. } = self.ends[k as usize];
-            let dynamic = if self.dynamic[first as usize] { first } else { second };
-            let (weight, lost) = sums[self.islands.root(dynamic as usize)];
-            lost > HARD_PART * weight
-        };
-        (0..self.ends.len() as u32).partition(|k| !hard(k))
+        let hard = |(weight, lost)| lost > HARD_PART * weight;
+        let mut class: Vec<usize> = sums.into_iter().map(|sums| usize::from(hard(sums))).collect();
+        if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
+            for (k, ends) in self.ends.iter().enumerate() {
+                let manifold = self.contacts().manifold(k);
+                let points = &manifold.points[..manifold.count as usize];
+                if points.iter().any(|p| p.normal != points[0].normal) {
+                    class[self.island_of(ends)] |= 2;
+                }
+            }
+        }
+        class
+    }
+
+    /// The number of the island that a contact belongs to.
+    fn island_of(&self, ends: &Ends) -> usize {
+        // Bodies that do not yield have the highest number.
+        self.islands.root(ends.first as usize).min(self.islands.root(ends.second as usize))
     }
 
     /// Stage 4: substeps of bounces, gravity, warm start and sweeps.
     pub(crate) fn resolve_contacts(&mut self) {
-        let h = self.substep_seconds();
         let settings = self.environment.settings;
-        let guard = EnergyGuard { islands: &self.islands, dynamic: &self.dynamic, driven: &self.driven };
-        let mut kicks: Vec<Row> = self.bodies.accelerations.iter().map(|a| Row(a.0.map(|x| x * h))).collect();
-        kicks.push(Row::default());
-        let mut before = Vec::new();
-        let (blocks, bodies, impulses) = (&mut self.blocks, &mut self.bodies, &mut self.impulses);
-        let standing = StandingPass {
-            guard: &guard,
-            kicks: &kicks,
-            displacements: &bodies.displacements,
-            substep_seconds: h,
+        let h = self.substep_seconds();
+        let at = Guarding { islands: &self.islands, driven: &self.driven };
+        let (rows, bodies, impulses) = (&mut self.rows, &mut self.bodies, &mut self.impulses);
+        let mut standing = StandingPass {
+            guard: &mut self.guard,
+            at,
+            kicks: &bodies.kicks,
             sweeps: settings.first_sweeps_hard,
         };
-        standing.run(&mut blocks[self.easy_blocks..]);
+        let Rows { flat, uneven } = rows;
+        standing.run(&mut flat.blocks[flat.easy..], &mut flat.details[flat.easy..]);
+        standing.run(&mut uneven.blocks[uneven.easy..], &mut uneven.details[uneven.easy..]);
         for substep in 0..settings.substeps {
             if self.bounces {
-                resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings, impulses));
-            }
-            for (velocity, kick) in bodies.velocities.iter_mut().zip(&kicks) {
-                for k in 0..6 {
-                    velocity.0[k] += kick.0[k];
-                }
+                rows.resolve_collisions(&mut moving(bodies, &settings, impulses));
             }
             if substep == 1 {
-                remove_momentum(blocks);
+                rows.remove_momentum(&mut bodies.pushes);
             }
-            before.clone_from(&bodies.velocities);
-            apply_impulses(blocks, &mut bodies.velocities);
+            fall(bodies);
+            if substep == 0 {
+                rows.apply_impulses(&mut bodies.velocities);
+            }
             let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
-            guard.check(blocks, &before, &mut bodies.velocities, guess);
+            keep_energy(&mut self.guard, at, rows, bodies, guess);
             for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
-                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
+                rows.sweep(&mut bodies.velocities);
             }
-            guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
-            displace(bodies, &before, &kicks, h);
-            relax(blocks, &mut moving(bodies, &kicks, &settings, &mut []), self.bounces);
-            add_substep(impulses, blocks);
+            keep_energy(&mut self.guard, at, rows, bodies, Guarded::Result);
+            displace(bodies, h);
+            rows.relax(&mut moving(bodies, &settings, &mut []), self.bounces);
+            note_pushes(bodies);
+            rows.add_impulses(impulses);
             if settings.shock_propagation == ShockPropagation::Classic {
-                propagate_classic(blocks, &mut bodies.velocities, &bodies.displacements, h);
+                rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
             }
         }
     }
@@ -258,13 +285,11 @@ impl<'a> Batch<'a> {
     /// Stage 5: remaining overlap is pushed out, level by level.
     pub(crate) fn propagate_shock(&mut self) {
         let settings = self.environment.settings;
-        let push_max = settings.recovery_speed_max * settings.frame_seconds;
         for _ in 0..self.pushes() {
-            propagate_shock(&mut self.blocks, &mut self.bodies.displacements, &settings, push_max);
+            self.rows.propagate_shock(OnlyHard::No, &mut self.bodies.displacements, &settings);
         }
-        let hard = &mut self.blocks[self.easy_blocks..];
         for _ in 0..HARD_PUSHES {
-            propagate_shock(hard, &mut self.bodies.displacements, &settings, push_max);
+            self.rows.propagate_shock(OnlyHard::Yes, &mut self.bodies.displacements, &settings);
         }
     }
 
@@ -295,11 +320,7 @@ impl<'a> Batch<'a> {
     /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
     pub(crate) fn overlap_growth(&self) -> Vec<f32> {
         let mut growth = vec![0.0; self.ends.len()];
-        for block in &self.blocks {
-            for (contact, deeper) in block.overlap_growth(&self.bodies.displacements) {
-                growth[contact] = deeper;
-            }
-        }
+        self.rows.overlap_growth(&self.bodies.displacements, &mut growth);
         growth
     }
 }
@@ -310,30 +331,21 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
 }
 
 /// What the kernels that look ahead need of the bodies.
-fn moving<'a>(
-    bodies: &'a mut Bodies,
-    kicks: &'a [Row],
-    settings: &StepSettings,
-    bounced: &'a mut [[f32; 4]],
-) -> Moving<'a> {
+fn moving<'a>(bodies: &'a mut Bodies, settings: &StepSettings, bounced: &'a mut [[f32; 4]]) -> Moving<'a> {
     Moving {
         velocities: &mut bodies.velocities,
         displacements: &bodies.displacements,
-        kicks,
+        kicks: &bodies.kicks,
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
         bounced,
     }
 }
 
-/// Moves the bodies by their velocities for one substep. A body that no impulse reached flies its parabola; one that was pushed moves as the
-/// contacts were solved, with its new velocity.
-fn displace(bodies: &mut Bodies, before: &[Row], kicks: &[Row], h: f32) {
-    let rows = bodies.displacements.iter_mut().zip(&bodies.velocities).zip(before.iter().zip(kicks));
-    for ((displacement, velocity), (free, kick)) in rows {
-        let flies = if velocity == free { 0.5 } else { 0.0 };
-        for k in 0..6 {
-            displacement.0[k] += h * (velocity.0[k] - flies * kick.0[k]);
-        }
+/// Scales back what impulses have added, where it is energy.
+fn keep_energy(guard: &mut EnergyGuard, at: Guarding, rows: &mut Rows, bodies: &mut Bodies, what: Guarded) {
+    if guard.gains(at, &bodies.free, &bodies.velocities, what) {
+        guard.scale_back(at.islands, &bodies.free, &mut bodies.velocities);
+        rows.scale_impulses(guard, at.islands, what);
     }
 }

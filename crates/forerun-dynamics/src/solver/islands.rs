@@ -93,6 +93,11 @@ impl Islands {
         self.number[i] as usize
     }
 
+    /// By body: the number of its island.
+    pub(crate) fn numbers(&self) -> &[u32] {
+        &self.number
+    }
+
     /// How many islands there are.
     pub(crate) fn count(&self) -> usize {
         self.count as usize

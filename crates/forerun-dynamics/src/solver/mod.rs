@@ -4,23 +4,30 @@
     reason = "kernels walk several short arrays side by side; the index is the point"
 )]
 
+mod arrange;
 mod blocks;
 mod bodies;
 mod collisions;
 mod contact_graph;
+mod energy_guard;
 mod flight;
 mod impulses;
 mod islands;
 mod load;
+mod manifolds;
 mod overlap;
+mod points;
 mod positions;
 mod prepare;
 mod pressure;
 mod rest;
 mod rotation;
+mod rows;
 mod shock;
+mod sides;
 mod spring;
 mod standing;
+mod substep;
 mod sweep;
 mod team;
 mod velocities;
