@@ -282,10 +282,9 @@ mod tests {
             let way = Quat::from_rotation_z(part(0.732_051)) * (turn * Vec3::X);
             let high = Vec3::Y * 100.0;
             let poses = [Pose::from_position(high), Pose::new(high + way * (2.0 + 0.03 * i as f32), turn)];
-            for (state, (body, pose)) in
-                [1, 2].into_iter().zip(&poses).map(|(i, pose)| (i, (world.bodies()[i].clone(), pose)))
-            {
-                world.states_mut()[state] = body.state_at(pose, Vec3::ZERO, Vec3::ZERO);
+            for (i, pose) in [1, 2].into_iter().zip(&poses) {
+                let state = world.bodies()[i].state_at(pose, Vec3::ZERO, Vec3::ZERO);
+                world.states_mut()[i] = state;
             }
             let ours = meter::deepest_overlap_m(&world);
             let [a, b] = poses.each_ref().map(parry_pose);
