@@ -6,6 +6,7 @@
 #![allow(unsafe_code, reason = "one of the rooms that use processor intrinsics")]
 
 use std::arch::x86_64::*;
+use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{LANES, LaneMask, Lanes, Row};
@@ -73,22 +74,22 @@ unsafe impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
+    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
         let mut r = [unsafe { _mm256_setzero_ps() }; LANES];
         for lane in 0..LANES {
-            r[lane] = unsafe { _mm256_load_ps(rows[index[lane] as usize].0.as_ptr()) };
+            r[lane] = unsafe { _mm256_load_ps(rows[index[lane] as usize].as_ptr().cast()) };
         }
         let [a, b, c, d, e, f, g, h] = transpose(r);
         [Avx2(a), Avx2(b), Avx2(c), Avx2(d), Avx2(e), Avx2(f), Avx2(g), Avx2(h)]
     }
 
     #[inline(always)]
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
+    fn scatter(rows: &[Cell<Row>], index: &[u32; LANES], values: [Self; 6]) {
         let [a, b, c, d, e, f] = values;
         let zero = unsafe { _mm256_setzero_ps() };
         let columns = transpose([a.0, b.0, c.0, d.0, e.0, f.0, zero, zero]);
         for lane in 0..LANES {
-            unsafe { _mm256_store_ps(rows[index[lane] as usize].0.as_mut_ptr(), columns[lane]) };
+            unsafe { _mm256_store_ps(rows[index[lane] as usize].as_ptr().cast(), columns[lane]) };
         }
     }
 }

@@ -70,7 +70,6 @@ fn prepare_lanes<F: Lanes, K: Kind>(
     }
 }
 
-
 /// One body of each contact.
 struct End<F> {
     position: V8<F>,
