@@ -59,7 +59,6 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("block_on_slope", "(c) 1/1000: slip of the rider, m", 9.624, TIPS),
     miss("block_on_slope", "(c) 1/1000: hop, m", 0.4281, TIPS),
     miss("block_on_slope", "(c) 1/1000: tilt, degrees", 180.0, TIPS),
-    miss("rolling_plate", "along y: the same against the target, m²/s²", 6.13e-07, ROUNDS_PLATE),
     miss("rolling_plate", "at 60°: the same against the target, m²/s²", 1.68e-06, ROUNDS_PLATE),
     miss("rolling_down", "mesh sphere, 4.5°, 1/240: fall off, part", 0.1792, FACETS),
     miss("rolling_down", "mesh sphere, 9°, 1/240: fall off, part", 0.153, FACETS),

@@ -60,6 +60,16 @@ impl<'a> ContactList<'a> {
     }
 }
 
+/// Islands by how they are to be solved.
+#[derive(Debug, Default)]
+struct Classes {
+    /// By island: weight, and what of it the load pass has lost.
+    sums: Vec<(f64, f64)>,
+    of_island: Vec<usize>,
+    /// By class.
+    contacts: [Vec<u32>; 4],
+}
+
 /// Some islands, with the bodies that do not yield but that they touch. Kept from step to step for its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Batch<'a> {
@@ -85,6 +95,7 @@ pub(crate) struct Batch<'a> {
     loads: Loads,
     rows: Rows,
     arranger: Arranger,
+    classes: Classes,
     guard: EnergyGuard,
     endings: Vec<Ending>,
     bounces: bool,
@@ -122,6 +133,7 @@ impl<'a> Batch<'a> {
             loads: self.loads,
             rows: self.rows,
             arranger: self.arranger,
+            classes: self.classes,
             guard: self.guard,
             endings: self.endings,
             bounces: false,
@@ -176,10 +188,11 @@ impl<'a> Batch<'a> {
 
     /// Finds a lane for every contact: flat islands apart from uneven ones, easy ones before hard ones.
     fn arrange(&mut self) {
-        let class = self.classes();
-        let mut chosen: [Vec<u32>; 4] = Default::default();
+        self.classify();
+        let mut chosen = std::mem::take(&mut self.classes.contacts);
+        chosen.iter_mut().for_each(Vec::clear);
         for (k, ends) in self.ends.iter().enumerate() {
-            chosen[class[self.island_of(ends)]].push(k as u32);
+            chosen[self.classes.of_island[self.island_of(ends)]].push(k as u32);
         }
         let order = Order { graph: &self.graph, contacts: &self.ends, yields: &self.dynamic };
         let (arranger, Rows { flat, uneven }) = (&mut self.arranger, &mut self.rows);
@@ -195,29 +208,31 @@ impl<'a> Batch<'a> {
         uneven.easy = uneven.count;
         arranger.add(uneven_hard, &order, uneven);
         uneven.finish();
+        self.classes.contacts = chosen;
     }
 
-    /// By island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps; 2 more where some
-    /// manifold has points that push different ways, which only those of meshes do.
-    fn classes(&self) -> Vec<usize> {
-        let mut sums = vec![(0.0f64, 0.0f64); self.islands.count() + 1];
+    /// Finds the class of each island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps;
+    /// 2 more where some manifold has points that push different ways, which only those of meshes do.
+    fn classify(&mut self) {
+        let Classes { sums, of_island, .. } = &mut self.classes;
+        fill(sums, self.islands.count() + 1, (0.0, 0.0));
         for (i, strain) in self.loads.strain.iter().enumerate() {
             let sum = &mut sums[self.islands.root(i)];
             sum.0 += f64::from(strain.weight);
             sum.1 += f64::from(strain.lost);
         }
-        let hard = |(weight, lost)| lost > HARD_PART * weight;
-        let mut class: Vec<usize> = sums.into_iter().map(|sums| usize::from(hard(sums))).collect();
+        of_island.clear();
+        of_island.extend(sums.iter().map(|(weight, lost)| usize::from(*lost > HARD_PART * weight)));
         if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
-            for (k, ends) in self.ends.iter().enumerate() {
+            for k in 0..self.ends.len() {
                 let manifold = self.contacts().manifold(k);
                 let points = &manifold.points[..manifold.count as usize];
                 if points.iter().any(|p| p.normal != points[0].normal) {
-                    class[self.island_of(ends)] |= 2;
+                    let island = self.island_of(&self.ends[k]);
+                    self.classes.of_island[island] |= 2;
                 }
             }
         }
-        class
     }
 
     /// The number of the island that a contact belongs to.

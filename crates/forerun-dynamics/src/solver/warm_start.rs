@@ -1,7 +1,7 @@
 //! Warm start: the guessed impulses are applied before the sweeps of the first substep. Later substeps start from what the last one did to each body.
 
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
-use super::points::{Kind, Point, Push};
+use super::points::{Kind, Point};
 use super::sides::Sides;
 use crate::lanes::{Lanes, Portable, Row, dispatched, recast, recast_mut};
 
@@ -53,10 +53,7 @@ fn remove_lanes<F: Lanes, K: Kind>(
 
 #[inline(always)]
 fn push_sides<F: Lanes, K: Kind>(block: &Block<F, K>, points: &[F; 4], friction: &[F; 3], rows: &mut [Row]) {
-    let mut push = Push::zero();
-    for q in 0..4 {
-        block.points[q].add(points[q], &mut push);
-    }
+    let mut push = Point::push(&block.points, points);
     push.rub([friction[0], friction[1]], friction[2]);
     let mut sides = Sides::gather(block, rows);
     sides.push(block, &push);
