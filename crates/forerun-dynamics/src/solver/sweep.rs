@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf, Friction};
 use super::collisions::Ahead;
-use super::points::{Kind, Point, Push};
+use super::points::{Kind, Point, Relative, sum, weighted};
 use super::sides::Sides;
 use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast, recast_mut};
 
@@ -110,34 +110,46 @@ fn solve<F: Lanes, K: Kind>(block: &mut Block<F, K>, v: &mut Sides<F>, allowed: 
     together(block, &mut closing);
     one_by_one(block, &mut closing);
 
-    let mut push = Push::zero();
-    let mut slip = [relative.linear.x, relative.linear.y, relative.angular.z];
-    let mut sum = F::zero();
+    let mut changes = [F::zero(); 4];
     for q in 0..4 {
-        let change = block.impulses[q] - before[q];
-        block.points[q].add(change, &mut push);
-        for k in 0..3 {
-            slip[k] += block.friction.drag[k][q] * change;
-        }
-        sum += block.impulses[q];
+        changes[q] = block.impulses[q] - before[q];
     }
+    let slip = slip(block, &relative, &changes);
+    let sum = sum(&block.impulses);
     let rubbed = friction(&block.friction, &slip, sum, &block.friction.impulses);
     let old = block.friction.impulses;
+    let mut push = Point::push(&block.points, &changes);
     push.rub([rubbed[0] - old[0], rubbed[1] - old[1]], rubbed[2] - old[2]);
     block.friction.impulses = rubbed;
     v.push(block, &push);
 }
 
+/// How a contact slips along its tangents and twists about its normal, after such impulses at its points.
+#[inline(always)]
+pub(crate) fn slip<F: Lanes, K: Kind>(
+    block: &Block<F, K>,
+    relative: &Relative<F>,
+    impulses: &[F; 4],
+) -> [F; 3] {
+    let [x, y, twist] = &block.friction.drag;
+    [
+        relative.linear.x + weighted(x, impulses),
+        relative.linear.y + weighted(y, impulses),
+        relative.angular.z + weighted(twist, impulses),
+    ]
+}
+
 /// The mean of the points as one row: the same impulse at each, down to none at the least loaded. Converges faster than the points alone.
 #[inline(always)]
 fn together<F: Lanes, K: Kind>(block: &mut Block<F, K>, closing: &mut [F; 4]) {
-    let (mut sum, mut least) = (F::zero(), F::splat(1e30));
+    let (mut own, mut least) = ([F::zero(); 4], [F::zero(); 4]);
     for q in 0..4 {
         let is_point = block.is_point(q);
-        sum += is_point.select(closing[q], F::zero());
-        least = is_point.select(block.impulses[q], least).min(least);
+        own[q] = is_point.select(closing[q], F::zero());
+        least[q] = is_point.select(block.impulses[q], F::splat(1e30));
     }
-    let share = (-(block.mean_gain * sum)).max(-least);
+    let least = least[0].min(least[1]).min(least[2].min(least[3]));
+    let share = (-(block.mean_gain * sum(&own))).max(-least);
     for q in 0..4 {
         block.impulses[q] += block.is_point(q).select(share, F::zero());
         closing[q] += block.row_sums[q] * share;
