@@ -20,11 +20,9 @@ const REST_PART: f32 = 0.1;
 /// A body that is farther than this from all others has nothing to rest on. Metres.
 const REST_TOUCH_M: f32 = 0.001;
 
-/// What the end of a frame needs to know about one body besides its rows.
+/// What the end of a frame needs to know about one body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ending {
-    /// The angular velocity with which the contacts started. rad/s
-    pub(crate) spin: Vec3,
     /// Deepest overlap with anybody at the start of the frame. Metres.
     pub(crate) overlap: f32,
     /// Whether it touches anybody, and is not only about to.
@@ -72,10 +70,9 @@ impl Resting<'_> {
         self.contacts.ends.iter().enumerate().filter(|(k, _)| self.deepest[*k] < REST_TOUCH_M)
     }
 
-    /// What contacts tell of the bodies at the end of a frame that started with these spins.
-    pub(crate) fn find_endings(&self, spins: &[Vec3], endings: &mut Vec<Ending>) {
-        endings.clear();
-        endings.extend(spins.iter().map(|&spin| Ending { spin, ..Ending::default() }));
+    /// What contacts tell of the bodies at the end of a frame.
+    pub(crate) fn find_endings(&self, endings: &mut Vec<Ending>) {
+        fill(endings, self.members.len(), Ending::default());
         let settings = &self.environment.settings;
         if settings.rest_frames() == 0 {
             return;
