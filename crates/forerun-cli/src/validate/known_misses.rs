@@ -39,7 +39,6 @@ const RESTS_DEEP: &str = "comes to rest before the overlap that it landed with i
 const FALLS: &str = "falls at once: contacts forget everything, and the sweeps do not find its balance";
 const FAST: &str = "the box goes 0.6 m in a frame of 1/60; at 1/240 it holds";
 const GAP: &str = "open";
-const INNER_EDGES: &str = "vertices inside a flat part of the floor meet the sides of what slides over them";
 const ROUNDS: &str = "30000 roundings of the stored state next to a separatrix";
 
 /// All of them, in the order of the cases.
@@ -106,22 +105,4 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("degenerate", "spike in a hole: deepest overlap, m", 0.2781, GAP),
     miss("degenerate", "spike in a crack: deepest overlap, m", 0.2608, GAP),
     miss("degenerate", "cube on a cliff with the same edges: not at its height, m", 0.001403, RESTS_DEEP),
-    miss("degenerate", "box over the edges of a sheet: hop, m", 0.2078, INNER_EDGES),
-    miss("degenerate", "box over the edges of a sheet: off its way, degrees", 2.503, INNER_EDGES),
-    miss("degenerate", "box over the edges of a sheet: turned, degrees", 90.02, INNER_EDGES),
-    miss("degenerate", "mesh over the edges of a sheet: hop, m", 0.2074, INNER_EDGES),
-    miss("degenerate", "mesh over the edges of a sheet: off its way, degrees", 1.69, INNER_EDGES),
-    miss("degenerate", "mesh over the edges of a sheet: turned, degrees", 90.03, INNER_EDGES),
-    miss("degenerate", "sliding spike on a sheet: change of velocity, part", 0.06741, INNER_EDGES),
-    miss("degenerate", "sliding spike on a sheet: hop, m", 0.2597, INNER_EDGES),
-    miss("degenerate", "sliding spike on a sheet: turned, degrees", 159.7, INNER_EDGES),
-    miss("degenerate", "box over the edges of a slab: hop, m", 0.2076, INNER_EDGES),
-    miss("degenerate", "box over the edges of a slab: off its way, degrees", 2.279, INNER_EDGES),
-    miss("degenerate", "box over the edges of a slab: turned, degrees", 90.0, INNER_EDGES),
-    miss("degenerate", "mesh over the edges of a slab: hop, m", 0.2077, INNER_EDGES),
-    miss("degenerate", "mesh over the edges of a slab: off its way, degrees", 2.542, INNER_EDGES),
-    miss("degenerate", "mesh over the edges of a slab: turned, degrees", 90.02, INNER_EDGES),
-    miss("degenerate", "sliding spike on a slab: change of velocity, part", 0.06741, INNER_EDGES),
-    miss("degenerate", "sliding spike on a slab: hop, m", 0.2597, INNER_EDGES),
-    miss("degenerate", "sliding spike on a slab: turned, degrees", 159.7, INNER_EDGES),
 ];
