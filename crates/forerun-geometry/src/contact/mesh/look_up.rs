@@ -5,6 +5,7 @@ use super::directions::{Direction, Points};
 use super::points::RoundPoint;
 use crate::Vec3;
 use crate::sdf::lanes::{Lanes, Lanes3, WIDTH};
+use crate::sdf::primitive::Surface;
 use crate::sdf::{Sample, Samples};
 
 /// Gradients shorter than this (squared) say nothing: they come from the middle of thin parts.
@@ -14,8 +15,8 @@ const GRADIENT_SQUARED_MIN: f32 = 0.01;
 /// face the surface less well are asked again.
 const FACING_WELL: f32 = -0.45;
 
-/// Points whose surroundings have normals within a degree and a half of each other are inside a plane.
-const FLAT_MAX: f32 = Sample::FLAT + 0.0013;
+/// Points whose surroundings have the same normal, but for rounding, are inside a plane.
+const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
 
 /// They are if they are inside the surface, or this close to it. Metres.
 const BESIDE: f32 = 0.005;
@@ -109,8 +110,8 @@ impl Direction<'_> {
             let i = found.trailing_zeros() as usize;
             found &= found - 1;
             let ball = RoundPoint { centre: eight.points.lane(i), radius: 0.0 };
-            // What lies on a plane is pushed off it at a right angle, whatever the field says of its rim.
-            let flat = eight.facing_max.0[i] <= FLAT_MAX;
+            // What lies on a plane is pushed off it at a right angle, whatever interpolation says of its rim.
+            let flat = matches!(self.surface, Surface::Field(_)) && eight.facing_max.0[i] <= FLAT_MAX;
             let normal = if flat { -eight.outwards.lane(i) } else { answers.normal.lane(i) };
             let candidate = self.candidate(ball, normal, answers.distance.0[i], index);
             candidates.push(Candidate { rough: answers.inset == 0.0 && !flat, ..candidate });
