@@ -12,7 +12,7 @@ use forerun::{BodyKind, Mass, Pose, Quat, Shape, Vec3};
 use joltc_sys::*;
 
 use crate::engine::{Engine, GROUND_DEPTH_M, Motion};
-use crate::stage::{Actor, Stage};
+use crate::stage::{Actor, Stage, is_shared};
 
 // Jolt is C++, and joltc-sys does not say so to the linker.
 #[cfg_attr(target_os = "linux", link(name = "stdc++"))]
@@ -60,8 +60,15 @@ impl Jolt {
         }
         let mut jolt = Jolt::empty(stage, threads);
         let ground_reach_m = stage.ground_reach_m();
+        let mut last = None;
         for actor in &stage.actors {
-            jolt.add(actor, gravity.y / -OWN_GRAVITY, ground_reach_m)?;
+            let maker = Maker { density: density(actor)?, ground_reach_m };
+            let shape = match last.take() {
+                Some((before, made)) if maker.makes_the_same(&before, actor)? => made,
+                _ => Owned(maker.make(&actor.def.shape)?),
+            };
+            jolt.add(actor, gravity.y / -OWN_GRAVITY, &shape);
+            last = Some((actor, shape));
         }
         // SAFETY: `system` is live until `drop`; no update runs.
         unsafe { JPC_PhysicsSystem_OptimizeBroadPhase(jolt.system) };
@@ -100,15 +107,8 @@ impl Jolt {
         }
     }
 
-    fn add(&mut self, actor: &Actor, gravity_part: f32, ground_reach_m: f32) -> Result<(), String> {
+    fn add(&mut self, actor: &Actor, gravity_part: f32, shape: &Owned) {
         let (def, fixed) = (&actor.def, actor.is_fixed());
-        if matches!(def.mass, Mass::Given { .. }) && actor.body.is_dynamic() {
-            return Err("its C interface takes no mass but that of a density".to_owned());
-        }
-        let volume = def.shape.mass_properties(1.0).mass;
-        let dynamic = actor.body.is_dynamic();
-        let density = if dynamic { 1.0 / (actor.body.inverse_mass * volume) } else { 1000.0 };
-        let shape = Maker { density, ground_reach_m }.make(&def.shape)?;
         // The box that stands for a half-space has its middle below.
         let is_ground = matches!(def.shape, Shape::HalfSpace);
         let own = Pose::from_position(Vec3::Y * if is_ground { 0.5 * GROUND_DEPTH_M } else { 0.0 });
@@ -130,18 +130,34 @@ impl Jolt {
             LinearDamping: 0.0,
             AngularDamping: 0.0,
             GravityFactor: def.gravity_scale * gravity_part,
-            Shape: shape,
+            Shape: shape.0,
             ..JPC_BodyCreationSettings::default()
         };
         let activation = if fixed { JPC_ACTIVATION_DONT_ACTIVATE } else { JPC_ACTIVATION_ACTIVATE };
         // SAFETY: `interface` belongs to the live `system`; `settings` is complete, its shape is live, and the body takes a share in it.
-        let id = unsafe {
-            let id = JPC_BodyInterface_CreateAndAddBody(self.interface, &settings, activation);
-            JPC_Shape_Release(shape);
-            id
-        };
+        let id = unsafe { JPC_BodyInterface_CreateAndAddBody(self.interface, &settings, activation) };
         self.bodies.push(Placed { id, own });
-        Ok(())
+    }
+}
+
+/// Density that gives the body the mass of ours. kg/m³.
+fn density(actor: &Actor) -> Result<f32, String> {
+    if !actor.body.is_dynamic() {
+        return Ok(1000.0);
+    }
+    if matches!(actor.def.mass, Mass::Given { .. }) {
+        return Err("its C interface takes no mass but that of a density".to_owned());
+    }
+    Ok(1.0 / (actor.body.inverse_mass * actor.def.shape.mass_properties(1.0).mass))
+}
+
+/// A share in a shape.
+struct Owned(*mut JPC_Shape);
+
+impl Drop for Owned {
+    fn drop(&mut self) {
+        // SAFETY: the share was ours since the shape was made, and is given up once.
+        unsafe { JPC_Shape_Release(self.0) };
     }
 }
 
@@ -199,6 +215,12 @@ struct Maker {
 }
 
 impl Maker {
+    /// Whether a body's shape is the one that it made for the body before.
+    fn makes_the_same(self, before: &&Actor, actor: &Actor) -> Result<bool, String> {
+        let shared = is_shared(&before.def.shape, &actor.def.shape);
+        Ok(shared && density(before)?.to_bits() == self.density.to_bits())
+    }
+
     /// A shape with one share in it.
     fn make(self, shape: &Shape) -> Result<*mut JPC_Shape, String> {
         // SAFETY (of all calls below): the settings are complete and live; what they point to is read before the call returns; on success

@@ -1,6 +1,7 @@
 //! Peers: the project's scenes on forerun and on other engines, side by side.
 //!
-//! The program that is started asks copies of itself, one engine and one round at a time (`measure`), and makes one table of the answers (`table`).
+//! The program that is started asks copies of itself, one engine and one round at a time (`measure`), and makes tables of the answers: engines side by
+//! side (`summary`), and everything (`table`).
 
 #[cfg(feature = "engines")]
 mod box3d;
@@ -16,7 +17,9 @@ mod quality;
 #[cfg(feature = "engines")]
 mod rapier;
 mod rounds;
+mod sets;
 mod stage;
+mod summary;
 mod table;
 
 use std::fs;
@@ -29,21 +32,21 @@ use crate::engine::Kind;
 use crate::measure::Task;
 use crate::rounds::{Plan, Row, SceneAndFrames};
 
-/// Run scenes on forerun, Rapier, Box3D and Jolt, in turn, and print one table.
+/// Run scenes on forerun, Rapier, Box3D and Jolt, in turn, and print them side by side as Markdown.
 #[derive(Debug, Parser)]
 #[command(name = "peers")]
 struct Args {
-    /// Built-in name, with sizes if wanted (dominoes:1000), or a TOML or JSON file; @FRAMES behind it for another length (dominoes@1800)
+    /// Built-in name, with sizes if wanted (dominoes:1000), or a TOML or JSON file; @FRAMES behind it for another length (dominoes@1800); `all` for the nine that we compare by
     #[arg(required = true)]
     scenes: Vec<String>,
     /// Engines to compare
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = Kind::ALL)]
     engines: Vec<Kind>,
-    /// Thread counts, like 1,2: CPU time on one, wall time on more
-    #[arg(long, value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u16).range(1..=256))]
+    /// Thread counts: CPU time counts on one, wall time on more
+    #[arg(long, value_delimiter = ',', default_value = "1,2", value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Vec<u16>,
     /// How often each engine runs each scene
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
     /// Frames to step
     #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
@@ -79,8 +82,8 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<(), String> {
-    let scenes = args.scenes.iter().map(|typed| scene_and_frames(typed, args.frames));
-    let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
+    let scenes = args.scenes.iter().map(|typed| scenes_and_frames(typed, args.frames));
+    let scenes = scenes.collect::<Result<Vec<_>, _>>()?.concat();
     if let (Some(kind), [first, ..]) = (args.one, scenes.as_slice()) {
         let SceneAndFrames { scene, frames } = first.clone();
         let task = Task { scene, kind, frames, threads: args.threads.first().copied().unwrap_or(1) };
@@ -99,18 +102,23 @@ fn run(args: &Args) -> Result<(), String> {
         let report = Report { machine, builds, rounds: args.rounds, rows };
         println!("{}", serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?);
     } else {
-        println!("{machine}; {} rounds; {builds}\n\n{}", args.rounds, table::markdown(&rows));
+        println!("{machine}; {} rounds; {builds}\n\n{}", args.rounds, summary::markdown(&rows));
+        println!("Everything:\n\n{}", table::markdown(&rows));
     }
     Ok(())
 }
 
-/// `dominoes:1000@600` is 600 frames of `dominoes:1000`.
-fn scene_and_frames(typed: &str, frames: u32) -> Result<SceneAndFrames, String> {
+/// `dominoes:1000@600` is 600 frames of `dominoes:1000`; `all` is the set, each scene with frames of its own.
+fn scenes_and_frames(typed: &str, frames: u32) -> Result<Vec<SceneAndFrames>, String> {
+    if typed == sets::ALL {
+        let of = |entry: sets::Entry| SceneAndFrames { scene: entry.scene.to_owned(), frames: entry.frames };
+        return Ok(sets::SCENES.map(of).to_vec());
+    }
     let Some((scene, own)) = typed.rsplit_once('@') else {
-        return Ok(SceneAndFrames { scene: typed.to_owned(), frames });
+        return Ok(vec![SceneAndFrames { scene: typed.to_owned(), frames }]);
     };
     match own.parse() {
-        Ok(frames) if frames >= 2 => Ok(SceneAndFrames { scene: scene.to_owned(), frames }),
+        Ok(frames) if frames >= 2 => Ok(vec![SceneAndFrames { scene: scene.to_owned(), frames }]),
         _ => Err(format!("\"{typed}\": behind @ stands a whole number of frames, 2 or more")),
     }
 }
@@ -136,10 +144,12 @@ mod tests {
 
     #[test]
     fn frames_may_stand_behind_a_scene() {
-        let parsed = |typed| scene_and_frames(typed, 300).map(|s| (s.scene, s.frames));
-        assert_eq!(parsed("rain:5000"), Ok(("rain:5000".to_owned(), 300)));
-        assert_eq!(parsed("dominoes@1800"), Ok(("dominoes".to_owned(), 1800)));
+        let parsed = |typed| scenes_and_frames(typed, 300);
+        let one = |scene: &str, frames| Ok(vec![SceneAndFrames { scene: scene.to_owned(), frames }]);
+        assert_eq!(parsed("rain:5000"), one("rain:5000", 300));
+        assert_eq!(parsed("dominoes@1800"), one("dominoes", 1800));
         assert!(parsed("dominoes@x").is_err() && parsed("dominoes@1").is_err());
+        assert_eq!(parsed("all").map(|scenes| scenes.len()), Ok(9));
     }
 
     #[test]

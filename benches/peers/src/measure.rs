@@ -31,11 +31,13 @@ pub(crate) enum Answer {
     Cannot(String),
 }
 
-/// Time of every step, and memory.
+/// Time of every step, by two clocks, and memory.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Times {
-    /// CPU time of the whole process on one thread, wall time on several; the first step is the first. Milliseconds.
-    pub(crate) steps_ms: Vec<f64>,
+    /// CPU time of all threads of the process, so that none can hide; the first step is the first. Milliseconds.
+    pub(crate) cpu_ms: Vec<f64>,
+    /// How long the steps took for whoever waits for them. Milliseconds.
+    pub(crate) wall_ms: Vec<f64>,
     /// Most memory that was resident from before the engine's world was built. Bytes.
     pub(crate) peak_bytes: Option<u64>,
 }
@@ -47,14 +49,17 @@ pub(crate) fn times(task: &Task) -> Answer {
         engine::prepare(task.kind, &mut stage)?;
         restart_peak();
         let mut world = engine::build(task.kind, &stage, task.threads)?;
-        let stopwatch = if task.threads == 1 { Stopwatch::Cpu } else { Stopwatch::Wall(Clock::system()) };
-        let mut steps_ms = Vec::with_capacity(task.frames as usize);
+        let clock = Clock::system();
+        let count = task.frames as usize;
+        let (mut cpu_ms, mut wall_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
         for _ in 0..task.frames {
-            let start_ms = stopwatch.read_ms();
+            let (wall_start, cpu_start) = (clock.now(), ProcessTime::now());
             world.step()?;
-            steps_ms.push(stopwatch.read_ms() - start_ms);
+            let (cpu, wall) = (cpu_start.elapsed(), clock.now() - wall_start);
+            cpu_ms.push(1000.0 * cpu.as_secs_f64());
+            wall_ms.push(1000.0 * wall.as_secs_f64());
         }
-        Ok(Times { steps_ms, peak_bytes: peak_bytes() })
+        Ok(Times { cpu_ms, wall_ms, peak_bytes: peak_bytes() })
     };
     on_its_threads(task, run).map_or_else(Answer::Cannot, Answer::Times)
 }
@@ -86,23 +91,6 @@ fn on_its_threads<T: Send>(task: &Task, run: impl FnOnce() -> Result<T, String> 
 
 fn open(scene: &str) -> Result<Scene, String> {
     Scene::open(scene).map_err(|error| error.to_string())
-}
-
-/// What a step's time is taken with.
-enum Stopwatch {
-    /// Of all threads of the process, so that none can hide.
-    Cpu,
-    Wall(Clock),
-}
-
-impl Stopwatch {
-    /// A reading of which only differences mean something. Milliseconds.
-    fn read_ms(&self) -> f64 {
-        match self {
-            Stopwatch::Cpu => 1000.0 * ProcessTime::now().as_duration().as_secs_f64(),
-            Stopwatch::Wall(clock) => 1000.0 * clock.now().as_secs_f64(),
-        }
-    }
 }
 
 /// Lets the peak start again from what is in use now. Linux only; elsewhere there is no peak to tell.

@@ -38,8 +38,32 @@ pub(crate) enum Own {
     Stands { low_m: f32, sideways_m: f32 },
     /// Of dominoes: how many have fallen, of how many.
     Fallen { count: usize, of: usize },
-    /// Of all other scenes: bodies whose centre is below a ground.
+    /// Of all other scenes: bodies whose centre is below a ground, within a fixed box, or lower than all fixed boxes.
     Lost { count: usize },
+}
+
+impl Quality {
+    /// The scene's own guard in words.
+    pub(crate) fn own_text(&self) -> String {
+        let mm = |metres: f32| format!("{:.1}", 1000.0 * metres);
+        let own = match &self.own {
+            Own::Stands { low_m, sideways_m } => {
+                format!("{} mm low, {} mm sideways", mm(*low_m), mm(*sideways_m))
+            }
+            Own::Fallen { count, of } => format!("{count} of {of} fell"),
+            Own::Lost { count } => format!("{count} lost"),
+        };
+        if self.not_finite > 0 { format!("{own}, {} not finite", self.not_finite) } else { own }
+    }
+
+    /// The same as a number that grows with what is wrong: metres or bodies. How many dominoes fell is right or wrong in no direction.
+    pub(crate) fn own_badness(&self) -> f32 {
+        match &self.own {
+            Own::Stands { low_m, sideways_m } => low_m.abs().max(*sideways_m),
+            Own::Fallen { .. } => 0.0,
+            Own::Lost { count } => *count as f32,
+        }
+    }
 }
 
 /// Looks at the motions of an engine.
@@ -149,13 +173,22 @@ fn sideways_m(start: &World, end: &World) -> f32 {
 }
 
 fn lost(world: &World) -> usize {
-    let is_ground =
-        |(body, _): &(&Body, &BodyState)| body.kind == BodyKind::Fixed && body.shape == Shape::HalfSpace;
-    let grounds: Vec<_> = (world.bodies().iter().zip(world.states())).filter(is_ground).collect();
-    let is_below = |position: Vec3| {
-        grounds.iter().any(|(body, state)| body.own_pose(state).inverse_transform_point(position).y < 0.0)
+    let fixed =
+        || (world.bodies().iter().zip(world.states())).filter(|(body, _)| body.kind == BodyKind::Fixed);
+    let is_inside = |(body, state): (&Body, &BodyState), position: Vec3| {
+        let own = body.own_pose(state).inverse_transform_point(position);
+        match &body.shape {
+            Shape::HalfSpace => own.y < 0.0,
+            Shape::Cuboid(cuboid) => own.abs().cmplt(cuboid.half_extents).all(),
+            _ => false,
+        }
     };
-    dynamic(world).filter(|(_, state)| is_below(state.position)).count()
+    let box_middles = fixed().filter(|(body, _)| matches!(body.shape, Shape::Cuboid(_)));
+    let lowest = box_middles.map(|(_, state)| state.position.y).fold(f32::INFINITY, f32::min);
+    let is_lost = |position: Vec3| {
+        fixed().any(|fixed| is_inside(fixed, position)) || (lowest.is_finite() && position.y < lowest)
+    };
+    dynamic(world).filter(|(_, state)| is_lost(state.position)).count()
 }
 
 #[cfg(test)]
@@ -201,6 +234,17 @@ mod tests {
         assert_eq!(own("dominoes", &meter.start, &end), Own::Fallen { count: 1, of: 4 });
         end.states_mut()[3].position.y = -0.1;
         assert_eq!(own("rain", &meter.start, &end), Own::Lost { count: 1 });
+    }
+
+    /// The ground is a box of 2 m whose top is at 0.
+    #[test]
+    fn rocks_in_the_ground_and_below_it_are_lost() {
+        let meter = Meter::new(&Scene::open("convex_pile:4").unwrap()).unwrap();
+        let mut end = meter.start.clone();
+        assert_eq!(own("convex_pile", &meter.start, &end), Own::Lost { count: 0 });
+        end.states_mut()[2].position.y = -0.1;
+        end.states_mut()[3].position.y = -30.0;
+        assert_eq!(own("convex_pile", &meter.start, &end), Own::Lost { count: 2 });
     }
 
     #[test]

@@ -9,7 +9,7 @@ use rapier3d::prelude::{
 };
 
 use crate::engine::{Engine, Motion};
-use crate::stage::{Actor, Stage};
+use crate::stage::{Actor, Stage, is_shared};
 
 type RapierPose = rapier3d::math::Pose;
 type RapierRotation = rapier3d::math::Rotation;
@@ -29,10 +29,17 @@ impl Rapier {
         world.gravity = vector(stage.environment.gravity);
         world.integration_parameters.dt = stage.environment.settings.frame_seconds;
         let mut bodies = Vec::with_capacity(stage.actors.len());
+        // Of the body before: bodies of one shape share it, as ours do.
+        let mut last: Option<(&Shape, SharedShape)> = None;
         for actor in &stage.actors {
             let material = actor.def.material;
+            let shape = match &last {
+                Some((same, made)) if is_shared(same, &actor.def.shape) => made.clone(),
+                _ => shape(&actor.def.shape)?,
+            };
+            last = Some((&actor.def.shape, shape.clone()));
             // Its mass comes with the body.
-            let collider = ColliderBuilder::new(shape(&actor.def.shape)?)
+            let collider = ColliderBuilder::new(shape)
                 .density(0.0)
                 .friction(material.friction)
                 .friction_combine_rule(CoefficientCombineRule::GeometricMean)

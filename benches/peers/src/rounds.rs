@@ -49,9 +49,19 @@ pub(crate) enum Outcome {
     Cannot(String),
 }
 
-/// Times of a step, the first left out. Each step's time is the smallest of all rounds: every round computes the same, so what is above was the machine.
+/// One engine on one scene, over all rounds.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Measured {
+    /// Of all threads of the process.
+    pub(crate) cpu: StepTimes,
+    pub(crate) wall: StepTimes,
+    pub(crate) peak_bytes: Option<u64>,
+    pub(crate) quality: Quality,
+}
+
+/// Times of a step by one clock, the first left out. Each step's time is the smallest of all rounds: every round computes the same, so what is above was the machine.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct StepTimes {
     pub(crate) first_ms: f64,
     pub(crate) mean_ms: f64,
     pub(crate) median_ms: f64,
@@ -59,8 +69,26 @@ pub(crate) struct Measured {
     pub(crate) max_ms: f64,
     /// Mean of each round by itself: how far they differ says how far to trust the others.
     pub(crate) round_means_ms: Vec<f64>,
-    pub(crate) peak_bytes: Option<u64>,
-    pub(crate) quality: Quality,
+}
+
+impl Measured {
+    /// The times that count: CPU time on one thread, where nobody can help and the clock on the wall only adds the neighbours; wall time on
+    /// several, where CPU time would count threads that wait as work.
+    pub(crate) fn counted(&self, threads: u16) -> &StepTimes {
+        if threads == 1 { &self.cpu } else { &self.wall }
+    }
+}
+
+impl Row {
+    /// What was measured, if the engine can do the scene.
+    pub(crate) fn measured(&self) -> Option<&Measured> {
+        if let Outcome::Measured(measured) = &self.outcome { Some(measured) } else { None }
+    }
+
+    /// The times that count, if the engine can do the scene.
+    pub(crate) fn times(&self) -> Option<&StepTimes> {
+        self.measured().map(|measured| measured.counted(self.threads))
+    }
 }
 
 /// Where the programs lie.
@@ -105,10 +133,16 @@ pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
     for (SceneAndFrames { scene, frames }, (bodies, meshes)) in plan.scenes.iter().zip(stages) {
         let fits = |kind: &&Kind| meshes || **kind != Kind::RapierTriangles;
         let kinds: Vec<Kind> = plan.engines.iter().filter(fits).copied().collect();
-        for &threads in &plan.threads {
+        let tasks = |threads: u16| -> Vec<Task> {
             let task = |kind: &Kind| Task { scene: scene.clone(), kind: *kind, frames: *frames, threads };
-            let tasks: Vec<Task> = kinds.iter().map(task).collect();
-            let outcomes = compare(&programs, &tasks, plan.rounds);
+            kinds.iter().map(task).collect()
+        };
+        // Once for all thread counts: the meters take longer than the steps.
+        let once = tasks(plan.threads.first().copied().unwrap_or(1));
+        let qualities: Vec<_> = once.iter().map(|task| quality_of(&programs, task)).collect();
+        for &threads in &plan.threads {
+            let tasks = tasks(threads);
+            let outcomes = compare(&programs, &tasks, &qualities, plan.rounds);
             rows.extend(tasks.into_iter().zip(outcomes).map(|(task, outcome)| Row {
                 scene: task.scene,
                 bodies,
@@ -123,10 +157,13 @@ pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// Quality of each first, then the rounds, each beginning with another engine.
-fn compare(programs: &Programs, tasks: &[Task], rounds: u32) -> Vec<Outcome> {
-    let qualities: Vec<Result<Quality, String>> =
-        tasks.iter().map(|task| quality_of(programs, task)).collect();
+/// The rounds, each beginning with another engine.
+fn compare(
+    programs: &Programs,
+    tasks: &[Task],
+    qualities: &[Result<Quality, String>],
+    rounds: u32,
+) -> Vec<Outcome> {
     let mut times: Vec<Result<Vec<Times>, String>> = tasks.iter().map(|_| Ok(Vec::new())).collect();
     for round in 0..rounds as usize {
         for turn in 0..tasks.len() {
@@ -141,11 +178,12 @@ fn compare(programs: &Programs, tasks: &[Task], rounds: u32) -> Vec<Outcome> {
         }
     }
     qualities
-        .into_iter()
+        .iter()
         .zip(times)
         .map(|(quality, times)| match (quality, times) {
-            (Ok(quality), Ok(times)) => Outcome::Measured(measured(quality, &times)),
-            (Err(why), _) | (_, Err(why)) => Outcome::Cannot(why),
+            (Ok(quality), Ok(times)) => Outcome::Measured(measured(quality.clone(), &times)),
+            (Err(why), _) => Outcome::Cannot(why.clone()),
+            (_, Err(why)) => Outcome::Cannot(why),
         })
         .collect()
 }
@@ -194,24 +232,31 @@ fn ask(programs: &Programs, task: &Task, flags: &[&str]) -> Result<Answer, Strin
 }
 
 fn measured(quality: Quality, rounds: &[Times]) -> Measured {
+    let by = |clock: fn(&Times) -> &[f64]| step_times(&rounds.iter().map(clock).collect::<Vec<_>>());
+    Measured {
+        cpu: by(|times| &times.cpu_ms),
+        wall: by(|times| &times.wall_ms),
+        peak_bytes: rounds.iter().filter_map(|times| times.peak_bytes).min(),
+        quality,
+    }
+}
+
+/// Of every round the times of all steps. Milliseconds.
+fn step_times(rounds: &[&[f64]]) -> StepTimes {
     let mean = |times: &[f64]| times.iter().sum::<f64>() / times.len().max(1) as f64;
-    let later = |times: &Times| times.steps_ms.get(1..).unwrap_or_default().to_vec();
-    let round_means_ms = rounds.iter().map(|times| mean(&later(times))).collect();
-    let steps = rounds.iter().map(|times| times.steps_ms.len()).min().unwrap_or(0);
-    let smallest =
-        |step: usize| rounds.iter().map(|times| times.steps_ms[step]).fold(f64::INFINITY, f64::min);
+    let later = |times: &&[f64]| mean(times.get(1..).unwrap_or_default());
+    let steps = rounds.iter().map(|times| times.len()).min().unwrap_or(0);
+    let smallest = |step: usize| rounds.iter().map(|times| times[step]).fold(f64::INFINITY, f64::min);
     let steps_ms: Vec<f64> = (0..steps).map(smallest).collect();
     let mut sorted = steps_ms.get(1..).unwrap_or_default().to_vec();
     sorted.sort_by(f64::total_cmp);
-    Measured {
+    StepTimes {
         first_ms: steps_ms.first().copied().unwrap_or(0.0),
         mean_ms: mean(&sorted),
         median_ms: rank(&sorted, 0.5),
         p99_ms: rank(&sorted, 0.99),
         max_ms: rank(&sorted, 1.0),
-        round_means_ms,
-        peak_bytes: rounds.iter().filter_map(|times| times.peak_bytes).min(),
-        quality,
+        round_means_ms: rounds.iter().map(later).collect(),
     }
 }
 
@@ -237,13 +282,22 @@ mod tests {
             not_finite: 0,
             hulls_per_mesh: 0,
         };
-        let times = |steps_ms: &[f64], peak| Times { steps_ms: steps_ms.to_vec(), peak_bytes: Some(peak) };
-        let rounds = [times(&[9.0, 1.0, 4.0, 3.0], 70), times(&[8.0, 2.0, 2.0, 5.0], 60)];
-        let m = measured(quality, &rounds);
-        assert_eq!((m.first_ms, m.median_ms, m.p99_ms, m.max_ms), (8.0, 2.0, 3.0, 3.0));
-        assert!((m.mean_ms - 2.0).abs() < 1e-12);
-        assert_eq!(m.peak_bytes, Some(60));
-        assert!((m.round_means_ms[1] - 3.0).abs() < 1e-12);
+        let times = |cpu_ms: &[f64], wall_ms: &[f64], peak| Times {
+            cpu_ms: cpu_ms.to_vec(),
+            wall_ms: wall_ms.to_vec(),
+            peak_bytes: Some(peak),
+        };
+        let rounds = [
+            times(&[9.0, 1.0, 4.0, 3.0], &[9.0, 1.5, 4.5, 3.5], 70),
+            times(&[8.0, 2.0, 2.0, 5.0], &[8.0, 2.5, 2.5, 5.5], 60),
+        ];
+        let measured = measured(quality, &rounds);
+        assert_eq!(measured.peak_bytes, Some(60));
+        let cpu = measured.counted(1);
+        assert_eq!((cpu.first_ms, cpu.median_ms, cpu.p99_ms, cpu.max_ms), (8.0, 2.0, 3.0, 3.0));
+        assert!((cpu.mean_ms - 2.0).abs() < 1e-12);
+        assert!((cpu.round_means_ms[1] - 3.0).abs() < 1e-12);
+        assert!((measured.counted(2).mean_ms - 2.5).abs() < 1e-12);
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Stage: what every engine is given: the bodies of a scene with the masses that ours have, in one order.
 #![cfg_attr(not(feature = "engines"), allow(dead_code, reason = "our own engine needs the definitions only"))]
 
+use std::sync::Arc;
+
 use forerun::dynamics::World;
 use forerun::{Body, BodyDef, BodyKind, Environment, Scene, Shape, world_of};
 
@@ -45,6 +47,16 @@ impl Stage {
 impl Actor {
     pub(crate) fn is_fixed(&self) -> bool {
         self.def.kind == BodyKind::Fixed
+    }
+}
+
+/// Whether two bodies have one shape in memory, so that the engine may share its own too.
+pub(crate) fn is_shared(a: &Shape, b: &Shape) -> bool {
+    match (a, b) {
+        (Shape::Hull(a), Shape::Hull(b)) => Arc::ptr_eq(a, b),
+        (Shape::Compound(a), Shape::Compound(b)) => Arc::ptr_eq(a, b),
+        (Shape::Mesh(a), Shape::Mesh(b)) => Arc::ptr_eq(a, b),
+        _ => false,
     }
 }
 

@@ -1,10 +1,9 @@
-//! Table: the rows as one Markdown table, ready for a page.
+//! Table: the rows as one Markdown table, every engine on a line of its own.
 
 use std::fmt::Write as _;
 
 use crate::engine::Kind;
-use crate::quality::Own;
-use crate::rounds::{Measured, Outcome, Row};
+use crate::rounds::{Measured, Outcome, Row, StepTimes};
 
 /// The table. In our rows the column `ours / best` compares with the fastest other engine on the same scene and threads.
 pub(crate) fn markdown(rows: &[Row]) -> String {
@@ -35,54 +34,42 @@ fn hulls(row: &Row) -> String {
 }
 
 fn measured_cells(row: &Row, m: &Measured, rows: &[Row]) -> String {
-    let q = &m.quality;
+    let (q, t) = (&m.quality, m.counted(row.threads));
     let mm = |metres: f32| format!("{:.1}", 1000.0 * metres);
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
-    let own = match &q.own {
-        Own::Stands { low_m, sideways_m } => {
-            format!("{} mm low, {} mm sideways", mm(*low_m), mm(*sideways_m))
-        }
-        Own::Fallen { count, of } => format!("{count} of {of} fell"),
-        Own::Lost { count } => format!("{count} lost"),
-    };
-    let own = if q.not_finite > 0 { format!("{own}, {} not finite", q.not_finite) } else { own };
     [
-        format!("{:.3}", m.mean_ms),
-        format!("{:.3}", m.median_ms),
-        format!("{:.3}", m.p99_ms),
-        format!("{:.3}", m.max_ms),
-        format!("{:.3}", m.first_ms),
-        or_dash(ratio(row, m, rows)),
+        format!("{:.3}", t.mean_ms),
+        format!("{:.3}", t.median_ms),
+        format!("{:.3}", t.p99_ms),
+        format!("{:.3}", t.max_ms),
+        format!("{:.3}", t.first_ms),
+        or_dash(ratio(row, t, rows)),
         format!("{} / {}", mm(q.overlap_max_m), mm(q.overlap_end_m)),
         or_dash(q.energy_max_over_initial.map(|part| format!("{part:.5}"))),
         format!("{:.2}", 1000.0 * q.speed_end),
-        own,
+        q.own_text(),
         or_dash(m.peak_bytes.map(|bytes| format!("{:.0}", bytes as f64 / 1_048_576.0))),
-        format!("+{:.0} %", 100.0 * unrest(m)),
+        format!("+{:.0} %", 100.0 * unrest(t)),
     ]
     .join(" | ")
 }
 
 /// Our mean over the best other's, and the same for the luckiest and unluckiest pair of rounds. None but for us.
-fn ratio(row: &Row, ours: &Measured, rows: &[Row]) -> Option<String> {
+fn ratio(row: &Row, ours: &StepTimes, rows: &[Row]) -> Option<String> {
     if row.kind != Kind::Forerun {
         return None;
     }
     let peers = rows.iter().filter(|other| {
         other.kind != Kind::Forerun && other.scene == row.scene && other.threads == row.threads
     });
-    let times = peers.filter_map(|peer| match &peer.outcome {
-        Outcome::Measured(measured) => Some(measured),
-        Outcome::Cannot(_) => None,
-    });
-    let best = times.min_by(|a, b| a.mean_ms.total_cmp(&b.mean_ms))?;
+    let best = peers.filter_map(Row::times).min_by(|a, b| a.mean_ms.total_cmp(&b.mean_ms))?;
     let rounds = ours.round_means_ms.iter().zip(&best.round_means_ms).map(|(our, peer)| our / peer);
     let (low, high) = rounds.fold((f64::INFINITY, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
     Some(format!("**{:.2}** ({low:.2}-{high:.2})", ours.mean_ms / best.mean_ms))
 }
 
 /// How much slower the slowest round was than the fastest, as a part of the fastest.
-fn unrest(m: &Measured) -> f64 {
+fn unrest(m: &StepTimes) -> f64 {
     let fastest = m.round_means_ms.iter().copied().fold(f64::INFINITY, f64::min);
     let slowest = m.round_means_ms.iter().copied().fold(0.0, f64::max);
     slowest / fastest - 1.0

@@ -165,6 +165,19 @@ pub(crate) struct CheckArgs {
     pub(crate) json: bool,
 }
 
+/// In what form kernels are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum InstructionsArg {
+    /// Plain arrays, as on any processor
+    Portable,
+    /// Four numbers at a time, twice
+    Sse2,
+    /// Eight numbers at a time
+    Avx2,
+    /// Eight at a time, with more registers
+    Avx512,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct BenchArgs {
     #[arg(required = true, help = SCENE_HELP)]
@@ -175,9 +188,18 @@ pub(crate) struct BenchArgs {
     /// Threads of the physics
     #[arg(long, default_value_t = 1, value_parser = threads())]
     pub(crate) threads: u16,
+    /// Frames that pass before the first measured one, so that the scene can come to rest
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub(crate) settle: u32,
     /// Let nothing come to rest, to compare with engines whose sleep is off
     #[arg(long)]
     pub(crate) awake: bool,
+    /// Processor instructions that the kernels may use at most; the results are the same [default: the fastest there are]
+    #[arg(long, value_enum)]
+    pub(crate) instructions: Option<InstructionsArg>,
+    /// Draw where the time goes, by stage, to FILE as SVG and as PNG, whatever its ending
+    #[arg(long, value_name = "FILE")]
+    pub(crate) chart: Option<PathBuf>,
     /// Print the result as JSON and nothing else
     #[arg(long)]
     pub(crate) json: bool,

@@ -14,10 +14,10 @@ use plotters::style::{FontStyle, register_font};
 use crate::failure::Failure;
 
 /// Size of a chart in pixels; two panels share the height.
-const SIZE: (u32, u32) = (1200, 720);
-const FONT: &str = "sans-serif";
-const AXIS_TEXT: RGBColor = RGBColor(40, 40, 40);
-const GRID: RGBColor = RGBColor(222, 222, 222);
+pub(crate) const SIZE: (u32, u32) = (1200, 720);
+pub(crate) const FONT: &str = "sans-serif";
+pub(crate) const AXIS_TEXT: RGBColor = RGBColor(40, 40, 40);
+pub(crate) const GRID: RGBColor = RGBColor(222, 222, 222);
 
 pub(crate) const BLUE_LINE: RGBColor = RGBColor(0, 114, 178);
 pub(crate) const ORANGE_LINE: RGBColor = RGBColor(213, 94, 0);
@@ -63,16 +63,21 @@ const X_LABEL: &str = "real time (s)";
 
 /// Draws the panels one above the other to `stem`.svg and `stem`.png.
 pub(crate) fn draw(panels: &[Panel], stem: &Path) -> Result<[PathBuf; 2], Failure> {
-    static FONT_REGISTERED: Once = Once::new();
-    FONT_REGISTERED.call_once(|| {
-        // The font is embedded and valid; were it not, drawing would fail below and say so.
-        let _ = register_font(FONT, FontStyle::Normal, dejavu::sans::regular());
-    });
+    embed_font();
     let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
     let failed = |path: &Path, error: String| Failure::chart(path, &error);
     draw_panels(&SVGBackend::new(&svg, SIZE).into_drawing_area(), panels).map_err(|e| failed(&svg, e))?;
     draw_panels(&BitMapBackend::new(&png, SIZE).into_drawing_area(), panels).map_err(|e| failed(&png, e))?;
     Ok([svg, png])
+}
+
+/// Makes [`FONT`] known; before anything is drawn.
+pub(crate) fn embed_font() {
+    static FONT_REGISTERED: Once = Once::new();
+    FONT_REGISTERED.call_once(|| {
+        // The font is embedded and valid; were it not, drawing would fail and say so.
+        let _ = register_font(FONT, FontStyle::Normal, dejavu::sans::regular());
+    });
 }
 
 fn draw_panels<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, panels: &[Panel]) -> Result<(), String> {
@@ -154,7 +159,7 @@ fn extent(lines: &[Line]) -> (f64, f64) {
 }
 
 /// The next number up of the form 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten.
-fn round_up(value: f64) -> f64 {
+pub(crate) fn round_up(value: f64) -> f64 {
     if value <= 0.0 {
         return 1.0;
     }
@@ -166,7 +171,7 @@ fn round_up(value: f64) -> f64 {
 }
 
 /// A number with no more digits than it needs.
-fn tick(value: f64) -> String {
+pub(crate) fn tick(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -19,10 +19,7 @@ pub(crate) enum Failure {
 impl Failure {
     /// A file or folder that cannot be written.
     pub(crate) fn write(path: &Path, error: &io::Error) -> Self {
-        Failure::Input(format!(
-            "{}: cannot be written: {error}; choose another folder with --out",
-            path.display()
-        ))
+        Failure::Input(format!("{}: cannot be written: {error}; choose another folder", path.display()))
     }
 
     /// A command that this version only knows by name.
@@ -36,7 +33,7 @@ impl Failure {
     /// A chart that cannot be drawn.
     pub(crate) fn chart(path: &Path, error: &str) -> Self {
         Failure::Input(format!(
-            "{}: the chart cannot be drawn: {error}; choose another folder with --out",
+            "{}: the chart cannot be drawn: {error}; choose another folder",
             path.display()
         ))
     }

@@ -200,6 +200,50 @@ fn scenes_are_listed_and_printed_as_files_that_can_be_run() {
     assert_eq!(report["scenes"][0]["state_hash"], built_in["scenes"][0]["state_hash"]);
 }
 
+/// Heaps of all kinds of shapes, so that every kernel has its part. The hashes of this build and of all others are those of the test `golden`
+/// of forerun-dynamics; here every way in which one program can run is compared.
+#[test]
+fn no_instruction_set_and_no_thread_count_changes_a_bit() {
+    let hashes = |instructions: &str, threads: &str| -> Option<Vec<String>> {
+        let scenes = ["pyramid:9", "rain:48", "convex_pile:90"];
+        let options =
+            ["--frames", "40", "--awake", "--json", "--instructions", instructions, "--threads", threads];
+        let output = forerun(&[&["bench"], &scenes[..], &options[..]].concat());
+        if code(&output) == Some(2) && text(&output.stderr).contains("this processor has no") {
+            return None;
+        }
+        let report = json(&output);
+        let hash = |scene: &Value| scene["state_hash"].as_str().expect("a hash").to_owned();
+        Some(report["scenes"].as_array().expect("scenes").iter().map(hash).collect())
+    };
+    let reference = hashes("portable", "1").expect("any processor has it");
+    assert_eq!(reference.len(), 3);
+    for instructions in ["portable", "sse2", "avx2", "avx512"] {
+        for threads in ["1", "2", "4"] {
+            let Some(found) = hashes(instructions, threads) else { continue };
+            assert_eq!(found, reference, "{instructions}, {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn bench_lets_a_scene_come_to_rest_and_draws_its_stages() {
+    let chart = folder("bench").join("stages.any");
+    let args = ["bench", "islands:1", "--frames", "10", "--settle", "200", "--json", "--chart"];
+    let report = json(&forerun(&[&args[..], &[chart.to_str().expect("plain")]].concat()));
+    let scene = &report["scenes"][0];
+    assert_eq!(scene["settle"], 200);
+    // Asleep: nothing is stored, and the world stands still. In the air at first: 52 bytes and more a body and frame.
+    assert_eq!(scene["bytes_per_body_frame"].as_f64(), Some(0.0));
+    assert_eq!(scene["speed_end_mean"].as_f64(), Some(0.0));
+    let falling = json(&forerun(&["bench", "islands:1", "--frames", "10", "--json"]));
+    assert!(falling["scenes"][0]["bytes_per_body_frame"].as_f64() > Some(50.0));
+    assert!(scene["timeline_frame_ms"].as_f64() < falling["scenes"][0]["timeline_frame_ms"].as_f64());
+    let svg = std::fs::read_to_string(chart.with_extension("svg")).expect("stages.svg");
+    assert!(svg.contains("shock propagation") && svg.contains("islands:1, "), "{svg}");
+    assert!(chart.with_extension("png").exists());
+}
+
 #[test]
 fn validate_prints_a_table_and_ends_well() {
     let output = forerun(&["validate", "free_fall"]);

@@ -5,10 +5,9 @@
 
 use forerun_geometry::Vec3;
 
-use crate::broad_phase::{Bound, overlapping_pairs};
-use crate::narrow_phase::find_contacts;
+use crate::detection::Detection;
 use crate::step::Member;
-use crate::{Body, BodyId, BodyState, Environment, StepSettings, World, bounds};
+use crate::{Body, BodyId, BodyState, Environment, StepSettings, World};
 
 /// The deepest overlap of two bodies of the world. Metres, 0 when nothing overlaps.
 #[must_use]
@@ -25,11 +24,9 @@ pub fn deepest_overlap_m(world: &World) -> f32 {
     let members: Vec<Member> = (world.bodies().iter().zip(states).enumerate())
         .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state })
         .collect();
-    let swept: Vec<Bound> = members
-        .iter()
-        .map(|m| Bound { aabb: bounds::swept_bound(m.body, &m.state, &still), dynamic: m.body.is_dynamic() })
-        .collect();
-    let contacts = find_contacts(&members, &overlapping_pairs(&swept), &still);
+    let mut detection = Detection::default();
+    detection.run(&members, &still);
+    let contacts = &detection.contacts;
     contacts
         .iter()
         .flat_map(|contact| &contact.manifold.points[..contact.manifold.count as usize])

@@ -1,11 +1,14 @@
 //! Plan: which islands a group falls into, what each needs, and how they are packed into batches.
 
+use std::ops::Range;
+
 use forerun_geometry::Vec3;
 
-use crate::Environment;
 use crate::narrow_phase::Contact;
-use crate::solver::{Islands, is_mesh};
+use crate::scratch::{add_up, fill};
+use crate::solver::{Ends, Roots, is_mesh};
 use crate::step::{Group, Member};
+use crate::{BodyKind, Environment};
 
 /// Contacts that a batch holds at least, if there are so many: enough to fill the lanes, few enough to share out.
 const CONTACTS_PER_BATCH: usize = 1024;
@@ -13,12 +16,8 @@ const CONTACTS_PER_BATCH: usize = 1024;
 const APPROACH_MAX: f32 = 2.0;
 
 /// An island with at least one contact.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Island {
-    /// Its dynamic members, and the others that they touch; indices into the group, sorted.
-    pub(crate) members: Vec<u32>,
-    /// Its contacts; indices into the group's, in their order.
-    pub(crate) contacts: Vec<u32>,
     /// Whether a mesh moves in it.
     pub(crate) mesh: bool,
     /// Slices into which its frame is to be cut.
@@ -26,137 +25,236 @@ pub(crate) struct Island {
 }
 
 /// The islands of a group, by their lowest dynamic member; resting ones and bodies without contacts are left out.
+#[derive(Debug, Default)]
 pub(crate) struct Plan {
     pub(crate) islands: Vec<Island>,
     /// Per member: its index in `islands`, or [`Plan::NONE`].
     pub(crate) island_of: Vec<u32>,
+    /// Per member with an island: its place in the list of all members of islands.
+    pub(crate) place: Vec<u32>,
     /// Members whose state stays as it is.
     pub(crate) resting: Vec<bool>,
+    /// Dynamic members (indices into the group), island by island, rising.
+    members: Vec<u32>,
+    member_starts: Vec<u32>,
+    /// Contacts between members of the group, island by island, in their order.
+    contacts: Vec<Ends>,
+    contact_starts: Vec<u32>,
+    roots: Roots,
+    traits: Vec<Trait>,
+    next: Vec<u32>,
+}
+
+/// What the plan asks of a member again and again.
+#[derive(Clone, Copy, Debug, Default)]
+struct Trait {
+    dynamic: bool,
+    touched: bool,
+    /// Speed of its centre, and of its surface by its spin beyond that. m/s
+    speed: f32,
+    /// rad/s
+    spin: f32,
+    radius: f32,
+    half_thickness: f32,
 }
 
 impl Plan {
     pub(crate) const NONE: u32 = u32::MAX;
 
-    pub(crate) fn new(group: &Group, environment: &Environment) -> Plan {
-        let members = group.members;
-        let dynamic = |i: usize| members[i].body.is_dynamic();
-        let ends = group.contacts.iter().map(|c| (c.first, c.second));
-        let roots = Islands::find(members.len(), dynamic, ends);
-        let mut plan = Plan {
-            islands: Vec::new(),
-            island_of: vec![Plan::NONE; members.len()],
-            resting: resting(group, &roots, environment),
-        };
-        plan.sort_contacts(group, &roots);
-        for island in &mut plan.islands {
-            island.members.sort_unstable();
-            island.members.dedup();
-            island.slices = slices_wanted(island, group, environment);
-        }
-        plan
-    }
-
-    fn sort_contacts(&mut self, group: &Group, roots: &Islands) {
-        let members = group.members;
-        // Islands are numbered by their lowest member, so that their order does not depend on the contacts.
-        let mut touched = vec![false; members.len()];
+    /// Makes this the plan of a group.
+    pub(crate) fn make(&mut self, group: &Group, environment: &Environment) {
+        self.traits.clear();
+        self.traits.extend(group.members.iter().map(Trait::of));
+        let traits = &mut self.traits;
+        self.roots.separate(group.members.len());
         for c in group.contacts {
-            for i in [c.first as usize, c.second as usize] {
-                touched[i] = true;
+            let (a, b) = (c.first as usize, c.second as usize);
+            traits[a].touched = true;
+            traits[b].touched = true;
+            if traits[a].dynamic && traits[b].dynamic {
+                self.roots.join(c.first, c.second);
             }
         }
-        for i in 0..members.len() {
-            if !touched[i] || !members[i].body.is_dynamic() || self.resting[i] {
-                continue;
+        self.roots.settle();
+        self.find_resting(group, environment);
+        self.sort_members(group);
+        self.sort_contacts(group);
+        self.count_slices(group, environment);
+    }
+
+    /// The dynamic members of an island (indices into the group), rising.
+    pub(crate) fn members(&self, island: u32) -> &[u32] {
+        &self.members[self.member_range(island)]
+    }
+
+    /// Where the members of an island are in the list of all members of islands.
+    pub(crate) fn member_range(&self, island: u32) -> Range<usize> {
+        self.member_starts[island as usize] as usize..self.member_starts[island as usize + 1] as usize
+    }
+
+    /// The contacts of an island, between members of the group, in their order.
+    pub(crate) fn contacts(&self, island: u32) -> &[Ends] {
+        let from = self.contact_starts[island as usize] as usize;
+        &self.contacts[from..self.contact_starts[island as usize + 1] as usize]
+    }
+
+    /// Islands are numbered by their lowest member, so that their order does not depend on the contacts.
+    fn sort_members(&mut self, group: &Group) {
+        let count = group.members.len();
+        fill(&mut self.island_of, count, Plan::NONE);
+        fill(&mut self.place, count, Plan::NONE);
+        self.islands.clear();
+        self.member_starts.clear();
+        self.member_starts.push(0);
+        let joins =
+            |plan: &Plan, i: usize| plan.traits[i].touched && plan.traits[i].dynamic && !plan.resting[i];
+        for i in 0..count {
+            if joins(self, i) {
+                let root = self.roots.root(i);
+                if root == i {
+                    self.island_of[i] = self.islands.len() as u32;
+                    self.islands.push(Island { mesh: false, slices: 1 });
+                    self.member_starts.push(0);
+                }
+                let island = self.island_of[root];
+                self.island_of[i] = island;
+                self.member_starts[island as usize + 1] += 1;
+                self.islands[island as usize].mesh |= is_mesh(&group.members[i].body.shape);
             }
-            let root = roots.root(i);
-            if root == i {
-                self.island_of[i] = self.islands.len() as u32;
-                self.islands.push(Island { slices: 1, ..Island::default() });
-            }
-            self.island_of[i] = self.island_of[root];
-            let island = &mut self.islands[self.island_of[i] as usize];
-            island.members.push(i as u32);
-            island.mesh |= is_mesh(&members[i].body.shape);
         }
+        add_up(&mut self.member_starts);
+        self.next.clone_from(&self.member_starts);
+        fill(&mut self.members, self.member_starts[self.islands.len()] as usize, 0);
+        for (i, &island) in self.island_of.iter().enumerate() {
+            if island != Plan::NONE {
+                let at = &mut self.next[island as usize];
+                self.members[*at as usize] = i as u32;
+                self.place[i] = *at;
+                *at += 1;
+            }
+        }
+    }
+
+    fn sort_contacts(&mut self, group: &Group) {
+        fill(&mut self.contact_starts, self.islands.len() + 1, 0);
+        for c in group.contacts {
+            let island = self.island_of_pair(c.first, c.second);
+            if island != Plan::NONE {
+                self.contact_starts[island as usize + 1] += 1;
+            }
+        }
+        add_up(&mut self.contact_starts);
+        self.next.clone_from(&self.contact_starts);
+        let count = self.contact_starts[self.islands.len()] as usize;
+        fill(&mut self.contacts, count, Ends { first: 0, second: 0, contact: 0 });
         for (k, c) in group.contacts.iter().enumerate() {
-            let (a, b) = (self.island_of[c.first as usize], self.island_of[c.second as usize]);
-            let index = if a == Plan::NONE { b } else { a };
-            if index == Plan::NONE {
-                continue;
-            }
-            let island = &mut self.islands[index as usize];
-            island.contacts.push(k as u32);
-            if a == Plan::NONE {
-                island.members.push(c.first);
-            }
-            if b == Plan::NONE {
-                island.members.push(c.second);
+            let island = self.island_of_pair(c.first, c.second);
+            if island != Plan::NONE {
+                let at = &mut self.next[island as usize];
+                self.contacts[*at as usize] = Ends { first: c.first, second: c.second, contact: k as u32 };
+                *at += 1;
             }
         }
     }
 
-    /// The pairs inside an island, or between it and bodies that do not yield: where a slice looks for contacts.
-    pub(crate) fn pairs_of(&self, wanted: &[bool], group: &Group) -> Vec<Vec<(u32, u32)>> {
-        let mut pairs = vec![Vec::new(); self.islands.len()];
-        for &(i, j) in group.pairs {
-            let (a, b) = (self.island_of[i as usize], self.island_of[j as usize]);
-            let dynamic = |k: u32| group.members[k as usize].body.is_dynamic();
-            let island = match (dynamic(i), dynamic(j)) {
-                (true, true) if a == b => a,
-                (true, false) => a,
-                (false, true) => b,
-                _ => Plan::NONE,
-            };
-            if island != Plan::NONE && wanted[island as usize] {
-                pairs[island as usize].push((i, j));
+    /// The island that a contact between two members belongs to.
+    fn island_of_pair(&self, a: u32, b: u32) -> u32 {
+        let of_first = self.island_of[a as usize];
+        if of_first == Plan::NONE { self.island_of[b as usize] } else { of_first }
+    }
+
+    /// The island that a pair of members is inside of, or between and bodies that do not yield: it is where a slice of it looks for contacts.
+    pub(crate) fn island_between(&self, i: u32, j: u32) -> u32 {
+        let (a, b) = (self.island_of[i as usize], self.island_of[j as usize]);
+        match (self.traits[i as usize].dynamic, self.traits[j as usize].dynamic) {
+            (true, true) if a == b => a,
+            (true, false) => a,
+            (false, true) => b,
+            _ => Plan::NONE,
+        }
+    }
+
+    /// Members of islands that are at a fixpoint: every dynamic one has been at rest with all of its island for a frame, and nothing moves into it.
+    fn find_resting(&mut self, group: &Group, environment: &Environment) {
+        let members = group.members;
+        fill(&mut self.resting, members.len(), false);
+        let full = environment.settings.rest_frames();
+        let rests = |(m, t): (&Member, &Trait)| {
+            // Velocities are asked too: whoever changes the length of a frame changes how many of them rest takes.
+            let still = m.state.velocity == Vec3::ZERO && m.state.angular_velocity == Vec3::ZERO;
+            t.dynamic && m.state.rest > full && still
+        };
+        if full == 0 || !members.iter().zip(&self.traits).any(rests) {
+            return;
+        }
+        let roots = &self.roots;
+        let mut awake = vec![false; members.len()];
+        for (i, (member, traits)) in members.iter().zip(&self.traits).enumerate() {
+            if traits.dynamic && !rests((member, traits)) {
+                awake[roots.root(i)] = true;
             }
         }
-        pairs
+        let mut held = vec![false; members.len()];
+        for c in group.contacts {
+            for (support, carried) in [(c.first, c.second), (c.second, c.first)] {
+                let support = &members[support as usize];
+                held[roots.root(carried as usize)] |= !support.body.is_dynamic();
+                awake[roots.root(carried as usize)] |= support.drives();
+            }
+        }
+        for (i, m) in members.iter().enumerate() {
+            // Nothing rests on nothing, whatever its state says.
+            awake[roots.root(i)] |= !held[roots.root(i)] && m.body.acceleration(environment) != Vec3::ZERO;
+        }
+        for (i, resting) in self.resting.iter_mut().enumerate() {
+            *resting = self.traits[i].dynamic && !awake[roots.root(i)];
+        }
+    }
+
+    /// Enough slices that nothing approaches by more than it is thick; a power of two.
+    fn count_slices(&mut self, group: &Group, environment: &Environment) {
+        let most = environment.settings.slices_max;
+        for island in 0..self.islands.len() {
+            let mut slices = 1;
+            for ends in self.contacts(island as u32) {
+                let contact = &group.contacts[ends.contact as usize];
+                let (a, b) = (&self.traits[ends.first as usize], &self.traits[ends.second as usize]);
+                let limit = APPROACH_MAX * a.half_thickness.min(b.half_thickness);
+                if fastest(contact, a, b) * environment.settings.frame_seconds <= limit {
+                    continue;
+                }
+                let (a, b) = (&group.members[ends.first as usize], &group.members[ends.second as usize]);
+                let approach = approach(contact, a, b, environment);
+                while slices < most && approach > limit * slices as f32 {
+                    slices *= 2;
+                }
+            }
+            self.islands[island].slices = slices;
+        }
     }
 }
 
-/// Members of islands that are at a fixpoint: every dynamic one has been at rest with all of its island for a frame, and nothing moves into it.
-fn resting(group: &Group, roots: &Islands, environment: &Environment) -> Vec<bool> {
-    let members = group.members;
-    let full = environment.settings.rest_frames();
-    let mut awake = vec![full == 0; members.len()];
-    for (i, m) in members.iter().enumerate() {
-        // Velocities are asked too: whoever changes the length of a frame changes how many of them rest takes.
-        let still = m.state.velocity == Vec3::ZERO && m.state.angular_velocity == Vec3::ZERO;
-        if m.body.is_dynamic() && (m.state.rest <= full || !still) {
-            awake[roots.root(i)] = true;
+impl Trait {
+    fn of(member: &Member) -> Trait {
+        let (body, state) = (member.body, &member.state);
+        Trait {
+            dynamic: body.kind == BodyKind::Dynamic,
+            touched: false,
+            speed: state.velocity.length(),
+            spin: state.angular_velocity.length(),
+            radius: body.radius,
+            half_thickness: body.half_thickness,
         }
     }
-    let mut held = vec![false; members.len()];
-    for c in group.contacts {
-        for (support, carried) in [(c.first, c.second), (c.second, c.first)] {
-            let support = &members[support as usize];
-            held[roots.root(carried as usize)] |= !support.body.is_dynamic();
-            awake[roots.root(carried as usize)] |= support.drives();
-        }
-    }
-    for (i, m) in members.iter().enumerate() {
-        // Nothing rests on nothing, whatever its state says.
-        awake[roots.root(i)] |= !held[roots.root(i)] && m.body.acceleration(environment) != Vec3::ZERO;
-    }
-    (members.iter().enumerate()).map(|(i, m)| m.body.is_dynamic() && !awake[roots.root(i)]).collect()
 }
 
-/// Enough slices that nothing approaches by more than it is thick; a power of two.
-fn slices_wanted(island: &Island, group: &Group, environment: &Environment) -> u32 {
-    let most = environment.settings.slices_max;
-    let mut slices = 1;
-    for &k in &island.contacts {
-        let c = &group.contacts[k as usize];
-        let (a, b) = (&group.members[c.first as usize], &group.members[c.second as usize]);
-        let limit = APPROACH_MAX * half_thickness(a, b);
-        let approach = approach(c, a, b, environment);
-        while slices < most && approach > limit * slices as f32 {
-            slices *= 2;
-        }
-    }
-    slices
+/// No point of the contact closes faster than this; cheap, and mostly enough to know. m/s
+fn fastest(contact: &Contact, a: &Trait, b: &Trait) -> f32 {
+    /// For rounding, and points a little outside of a shape.
+    const SLACK: f32 = 1.5;
+    let apart = contact.manifold.points().iter().fold(0.0, |most, p| f32::max(most, p.separation));
+    let of = |t: &Trait| t.speed + if t.spin > 0.0 { t.spin * (t.radius + apart) } else { 0.0 };
+    SLACK * (of(a) + of(b))
 }
 
 /// Half the thickness of the thinner of two bodies that can be passed through. Metres.
@@ -174,23 +272,20 @@ fn approach(contact: &Contact, a: &Member, b: &Member, environment: &Environment
     })
 }
 
-/// Islands (indices) packed into batches, in order; meshes apart.
-pub(crate) fn pack(islands: &[Island], chosen: &[u32]) -> Vec<Vec<u32>> {
-    let mut batches = Vec::new();
-    for mesh in [false, true] {
-        let mut batch = Vec::new();
-        let mut contacts = 0;
-        for &i in chosen.iter().filter(|&&i| islands[i as usize].mesh == mesh) {
-            batch.push(i);
-            contacts += islands[i as usize].contacts.len();
-            if contacts >= CONTACTS_PER_BATCH {
-                batches.push(std::mem::take(&mut batch));
-                contacts = 0;
-            }
-        }
-        if !batch.is_empty() {
-            batches.push(batch);
+/// Sorts the chosen islands, meshes last, else in order, and packs them into batches: ranges of what is sorted.
+pub(crate) fn pack(plan: &Plan, chosen: &mut [u32], batches: &mut Vec<Range<usize>>) {
+    let is_mesh = |island: u32| plan.islands[island as usize].mesh;
+    if chosen.iter().any(|&island| is_mesh(island)) {
+        chosen.sort_by_key(|&island| is_mesh(island));
+    }
+    batches.clear();
+    let (mut start, mut contacts) = (0, 0);
+    for k in 0..chosen.len() {
+        contacts += plan.contacts(chosen[k]).len();
+        let last = chosen.get(k + 1).is_none_or(|&next| is_mesh(next) != is_mesh(chosen[k]));
+        if contacts >= CONTACTS_PER_BATCH || last {
+            batches.push(start..k + 1);
+            (start, contacts) = (k + 1, 0);
         }
     }
-    batches
 }

@@ -2,8 +2,7 @@
 
 use forerun_geometry::Vec3;
 
-use crate::narrow_phase::Contact;
-use crate::solver::Batch;
+use crate::solver::{Batch, Ends};
 use crate::{BodyId, Member};
 
 /// Bodies that start the frame no farther apart than this touch, whether they push each other or not. Metres.
@@ -71,9 +70,9 @@ pub(crate) struct Ledger {
 
 impl Ledger {
     /// Notes the contacts of a solved batch. `island_of` says which island a contact belongs to.
-    pub(crate) fn note(&mut self, batch: &Batch, island_of: impl Fn(&Contact) -> u32) {
-        for (contact, impulses) in batch.contacts.iter().zip(&batch.impulses) {
-            let manifold = &contact.manifold;
+    pub(crate) fn note(&mut self, batch: &Batch, island_of: impl Fn(&Ends) -> u32) {
+        for (k, (contact, impulses)) in batch.ends.iter().zip(&batch.impulses).enumerate() {
+            let manifold = batch.contacts().manifold(k);
             let points = manifold.points();
             let [first, second] = [contact.first, contact.second].map(|i| &batch.members[i as usize]);
             let (mut impulse, mut speed) = (0.0, 0.0);

@@ -1,17 +1,17 @@
 //! World: bodies and one state each, for those who want no timeline.
 
-use crate::broad_phase::{Bound, overlapping_pairs};
-use crate::narrow_phase::find_contacts;
+use crate::detection::Detection;
+use crate::scratch::{StepScratch, emptied};
 use crate::step::{Group, Member, StepReport, advance_islands};
-use crate::{
-    Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches, bounds,
-};
+use crate::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches};
 
 /// Bodies at one frame.
 #[derive(Clone, Debug, Default)]
 pub struct World {
     bodies: Vec<Body>,
     states: Vec<BodyState>,
+    detection: Detection,
+    scratch: StepScratch,
     /// Gravity and settings. While [`Environment::check`] refuses them, [`World::step`] moves nothing.
     pub environment: Environment,
 }
@@ -20,7 +20,7 @@ impl World {
     /// An empty world.
     #[must_use]
     pub fn new(environment: Environment) -> Self {
-        World { bodies: Vec::new(), states: Vec::new(), environment }
+        World { environment, ..World::default() }
     }
 
     /// Adds a body.
@@ -78,22 +78,19 @@ impl World {
         if self.environment.check().is_err() {
             return StepReport::default();
         }
-        let members: Vec<Member> = (self.bodies.iter().zip(&self.states).enumerate())
-            .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state })
-            .collect();
-        let bounds: Vec<Bound> = members
-            .iter()
-            .map(|m| Bound {
-                aabb: bounds::swept_bound(m.body, &m.state, &self.environment),
-                dynamic: m.body.is_dynamic(),
-            })
-            .collect();
-        let pairs = overlapping_pairs(&bounds);
-        let contacts = find_contacts(&members, &pairs, &self.environment);
+        let mut members: Vec<Member> = std::mem::take(&mut self.scratch.members);
+        members.extend((self.bodies.iter().zip(&self.states).enumerate()).map(|(i, (body, state))| Member {
+            id: BodyId(i as u32),
+            body,
+            state: *state,
+        }));
+        let detection = &mut self.detection;
+        detection.run(&members, &self.environment);
         observer.after(Stage::Collisions);
-        let group = Group { members: &members, pairs: &pairs, contacts: &contacts };
-        let (next, report) = advance_islands(&group, &self.environment, observer, touches);
-        self.states = next;
+        let group = Group { members: &members, pairs: &detection.pairs, contacts: &detection.contacts };
+        let report = advance_islands(&group, &self.environment, observer, (touches, &mut self.scratch));
+        self.scratch.members = emptied(members);
+        std::mem::swap(&mut self.states, &mut self.scratch.next);
         report
     }
 

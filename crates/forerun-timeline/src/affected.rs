@@ -15,9 +15,10 @@
 
 use std::sync::Arc;
 
-use forerun_dynamics::broad_phase::{Bound, overlapping_pairs};
-use forerun_dynamics::narrow_phase::{Contact, find_contacts};
-use forerun_dynamics::{BodyId, Environment, Member, bounds};
+use forerun_dynamics::bounds::Prospect;
+use forerun_dynamics::broad_phase::{Bound, BroadPhase};
+use forerun_dynamics::narrow_phase::{Contact, NarrowPhase, Outlook};
+use forerun_dynamics::{BodyId, Environment, Member};
 use forerun_geometry::Aabb;
 
 use crate::Frame;
@@ -82,7 +83,7 @@ pub(crate) struct Affected<'a> {
 #[derive(Clone, Copy, Debug)]
 struct Met<'a> {
     member: Member<'a>,
-    bound: Aabb,
+    prospect: Prospect,
     /// Has to be advanced.
     due: bool,
     /// Fixed or kinematic, and a due body may reach it.
@@ -97,7 +98,7 @@ impl Met<'_> {
     }
 
     fn bound(&self) -> Bound {
-        Bound { aabb: self.bound, dynamic: self.is_dynamic() }
+        Bound { aabb: self.prospect.bound, dynamic: self.is_dynamic() }
     }
 }
 
@@ -106,6 +107,8 @@ impl Met<'_> {
 pub(crate) struct Scratch {
     /// Index plus 1; 0 is not met.
     met_index: Vec<u32>,
+    broad_phase: BroadPhase,
+    narrow_phase: NarrowPhase,
 }
 
 impl Clone for Scratch {
@@ -180,9 +183,9 @@ impl<'a> Search<'a, '_> {
         }
         let state = *self.inputs.table.get(id)?;
         let body = self.inputs.definitions.body(id, self.inputs.frame)?;
-        let bound = bounds::swept_bound(body, &state, &self.environment);
+        let prospect = Prospect::new(body, &state, &self.environment);
         let member = Member { id, body, state };
-        self.met.push(Met { member, bound, due: false, in_reach: false, looked: false });
+        self.met.push(Met { member, prospect, due: false, in_reach: false, looked: false });
         self.scratch.met_index[slot] = self.met.len() as u32;
         Some(self.met.len() as u32 - 1)
     }
@@ -232,25 +235,28 @@ impl<'a> Search<'a, '_> {
     /// Finds what the frontier touches; those that join by it go to `next`. Each pair is looked at once: when the first of its
     /// bodies is in the frontier.
     fn look_around(&mut self, frontier: &[u32], next: &mut Vec<u32>) {
-        let reach: Vec<Aabb> = frontier.iter().map(|index| self.met[*index as usize].bound).collect();
+        let reach: Vec<Aabb> =
+            frontier.iter().map(|index| self.met[*index as usize].prospect.bound).collect();
         let ids = frontier.iter().map(|index| self.met[*index as usize].member.id).collect();
         let mut around = self.meet_near(&reach, ids);
         around.retain(|index| !self.met[*index as usize].looked);
         for index in frontier {
             self.met[*index as usize].looked = true;
         }
-        let around: Vec<(u32, Met)> =
-            around.iter().map(|index| (*index, self.met[*index as usize])).collect();
-
-        let bounds: Vec<Bound> = around.iter().map(|(_, met)| met.bound()).collect();
-        let members: Vec<Member> = around.iter().map(|(_, met)| met.member).collect();
-        let mut pairs = overlapping_pairs(&bounds);
+        let met = |index: &u32| &self.met[*index as usize];
+        let bounds: Vec<Bound> = around.iter().map(|index| met(index).bound()).collect();
+        let members: Vec<Member> = around.iter().map(|index| met(index).member).collect();
+        let prospects: Vec<Prospect> = around.iter().map(|index| met(index).prospect).collect();
         // Those that were looked at before are not around: who is looked at is in the frontier.
-        let in_frontier: Vec<bool> = around.iter().map(|(_, met)| met.looked).collect();
+        let in_frontier: Vec<bool> = around.iter().map(|index| met(index).looked).collect();
+        let mut pairs = Vec::new();
+        self.scratch.broad_phase.overlapping_pairs(&bounds, &mut pairs);
         pairs.retain(|(a, b)| in_frontier[*a as usize] || in_frontier[*b as usize]);
-        let mut contacts = find_contacts(&members, &pairs, &self.environment);
+        let outlook = Outlook { members: &members, prospects: &prospects, environment: &self.environment };
+        let mut contacts = Vec::new();
+        self.scratch.narrow_phase.find_contacts(&outlook, &pairs, &mut contacts);
 
-        let met_of = |local: u32| around[local as usize].0;
+        let met_of = |local: u32| around[local as usize];
         for (a, b) in &mut pairs {
             let ends = (*a as usize, *b as usize);
             (*a, *b) = (met_of(*a), met_of(*b));
@@ -290,7 +296,7 @@ impl<'a> Search<'a, '_> {
             return;
         }
         let mut list: Vec<Met> = out_of_date.iter().filter_map(|id| self.old_inputs(*id)).collect();
-        let reach: Vec<Aabb> = list.iter().map(|old| old.bound).collect();
+        let reach: Vec<Aabb> = list.iter().map(|old| old.prospect.bound).collect();
         for index in self.meet_near(&reach, Vec::new()) {
             let met = self.met[index as usize];
             if met.is_dynamic() && !met.due {
@@ -304,11 +310,15 @@ impl<'a> Search<'a, '_> {
         list.sort_unstable_by_key(|met| met.member.id);
         let bounds: Vec<Bound> = list.iter().map(Met::bound).collect();
         let members: Vec<Member> = list.iter().map(|met| met.member).collect();
-        let mut pairs = overlapping_pairs(&bounds);
+        let prospects: Vec<Prospect> = list.iter().map(|met| met.prospect).collect();
+        let mut pairs = Vec::new();
+        self.scratch.broad_phase.overlapping_pairs(&bounds, &mut pairs);
         pairs.retain(|(a, b)| list[*a as usize].due != list[*b as usize].due);
         let (touching, reached): (Vec<_>, Vec<_>) =
             pairs.iter().partition(|(a, b)| bounds[*a as usize].dynamic && bounds[*b as usize].dynamic);
-        let contacts = find_contacts(&members, &touching, &self.environment);
+        let outlook = Outlook { members: &members, prospects: &prospects, environment: &self.environment };
+        let mut contacts = Vec::new();
+        self.scratch.narrow_phase.find_contacts(&outlook, &touching, &mut contacts);
         let touched = contacts.iter().map(|contact| (contact.first, contact.second));
         for (a, b) in reached.into_iter().chain(touched) {
             let partner = if list[a as usize].due { b } else { a };
@@ -325,9 +335,9 @@ impl<'a> Search<'a, '_> {
         if same_entry(Some(state), table.get(id)) && same_body(Some(body), now) {
             return None;
         }
-        let bound = bounds::swept_bound(body, state, &self.environment);
+        let prospect = Prospect::new(body, state, &self.environment);
         let member = Member { id, body, state: *state };
-        Some(Met { member, bound, due: true, in_reach: false, looked: false })
+        Some(Met { member, prospect, due: true, in_reach: false, looked: false })
     }
 
     /// The members in the order of their ids, and what is between them.

@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, EnvironmentError, bounds};
+use forerun_dynamics::{
+    Body, BodyDef, BodyError, BodyId, BodyState, Environment, EnvironmentError, StepScratch, bounds,
+};
 
 use crate::affected::{Mutation, Scratch};
 use crate::areas::{Areas, Until};
@@ -72,6 +74,7 @@ pub struct Timeline {
     pub(crate) effects: Arc<BTreeMap<Frame, Arc<FrameEffects>>>,
     pub(crate) areas: Areas,
     pub(crate) scratch: Scratch,
+    pub(crate) step_scratch: StepScratch,
     /// Of the local user's next command.
     pub(crate) next_sequence: u64,
     pub(crate) stats: Stats,
@@ -120,6 +123,7 @@ impl Timeline {
             effects: Arc::default(),
             areas,
             scratch: Scratch::default(),
+            step_scratch: StepScratch::default(),
             next_sequence: 0,
             stats: Stats::default(),
             edits: VecDeque::new(),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use forerun_dynamics::step::{Group, advance, advance_touching};
 use forerun_dynamics::{
-    BodyId, BodyKind, BodyState, Environment, Observer, Stage, StepReport, Touches, Unobserved,
+    BodyId, BodyKind, BodyState, Environment, Observer, Stage, StepReport, StepScratch, Touches, Unobserved,
 };
 
 use crate::Frame;
@@ -102,7 +102,8 @@ impl Timeline {
         observer.after(Stage::Collisions);
 
         let environment = definitions.environment(frame);
-        let (next, report, touches) = self.step(frame, &group, &environment, observer);
+        let mut scratch = std::mem::take(&mut self.step_scratch);
+        let (next, report, touches) = self.step((frame, &group), &environment, observer, &mut scratch);
         let is_last = arrival >= self.horizon();
         let arrived = Arrival {
             frame: arrival,
@@ -112,7 +113,8 @@ impl Timeline {
             until: if is_last { Until::FurtherNotice } else { Until::NextFrame },
             ask_everybody: self.recompute_all,
         };
-        let entries = entries(&group, &next, out_of_date);
+        let entries = entries(&group, next, out_of_date);
+        self.step_scratch = scratch;
         let outdated = (stale.everyone || stale.all_touched).then(|| stored.touches());
         let told = touches.map(|touches| Told::new(&entries, &group, &touches, table.touches(), outdated));
         // Forks and later edits share the effects: to touch them is to copy.
@@ -160,23 +162,23 @@ impl Timeline {
     }
 
     /// The next states of a group, and where that is recorded, who touched whom.
-    fn step(
+    fn step<'s>(
         &self,
-        frame: Frame,
-        group: &Affected,
+        (frame, group): (Frame, &Affected),
         environment: &Environment,
         observer: &mut dyn Observer,
-    ) -> (Vec<BodyState>, StepReport, Option<Touches>) {
+        scratch: &'s mut StepScratch,
+    ) -> (&'s [BodyState], StepReport, Option<Touches>) {
         let step = Group { members: &group.members, pairs: &group.pairs, contacts: &group.contacts };
         if self.settings.record_contacts {
             let mut touches = Touches::default();
-            let (next, report) = advance_touching(&step, environment, observer, &mut touches);
+            let (next, report) = advance_touching(&step, environment, observer, &mut touches, scratch);
             if frame == self.oldest() && touches.resting.contains(&true) {
                 touches = touches_of_all(&step, environment);
             }
             return (next, report, Some(touches));
         }
-        let (next, report) = advance(&step, environment, observer);
+        let (next, report) = advance(&step, environment, observer, scratch);
         (next, report, None)
     }
 }
@@ -190,7 +192,7 @@ fn touches_of_all(step: &Group, environment: &Environment) -> Touches {
     }
     let mut touches = Touches::default();
     let step = Group { members: &members, ..*step };
-    let _ = advance_touching(&step, environment, &mut Unobserved, &mut touches);
+    let _ = advance_touching(&step, environment, &mut Unobserved, &mut touches, &mut StepScratch::default());
     touches
 }
 

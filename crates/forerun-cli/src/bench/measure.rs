@@ -1,7 +1,7 @@
 //! Measures the step of one world: time per stage, and guards on the quality that the time was paid for.
 
 use cpu_time::ThreadTime;
-use forerun::dynamics::{Observer, Stage, World, meter};
+use forerun::dynamics::{Observer, Stage, Unobserved, World, lanes, meter};
 use forerun::{Clock, Threads};
 use serde::Serialize;
 
@@ -28,8 +28,12 @@ pub(crate) struct Measurement {
     pub(crate) scene: String,
     pub(crate) bodies: usize,
     pub(crate) frames: u32,
+    /// Frames that passed before the first measured one.
+    pub(crate) settle: u32,
     pub(crate) threads: u16,
-    /// The first step, which the others leave out. Milliseconds.
+    /// The processor instructions that the kernels used.
+    pub(crate) instructions: String,
+    /// The first measured step, which the others leave out. Milliseconds.
     pub(crate) first_step_ms: f64,
     /// CPU time of a step on one thread, wall time on several.
     pub(crate) step_ms: Spread,
@@ -41,8 +45,10 @@ pub(crate) struct Measurement {
     pub(crate) energy_max_over_initial: Option<f64>,
     pub(crate) speed_end_mean: f64,
     pub(crate) quarantined: u64,
-    /// What the timeline stores for a body and a frame.
+    /// What the timeline stores for a body and a frame. None for a scene without bodies.
     pub(crate) bytes_per_body_frame: Option<f64>,
+    /// What the timeline takes for a frame: the step of whoever is not at rest, finding out who that is, and storing. Milliseconds.
+    pub(crate) timeline_frame_ms: Option<f64>,
     pub(crate) peak_rss_bytes: Option<u64>,
     pub(crate) state_hash: String,
 }
@@ -67,18 +73,29 @@ pub(crate) struct Run<'a> {
     /// As it was typed.
     pub(crate) scene: &'a str,
     pub(crate) frames: u32,
+    pub(crate) settle: u32,
     pub(crate) thread_count: u16,
     pub(crate) threads: &'a Threads,
 }
 
+impl Run<'_> {
+    /// What the step's time is taken with.
+    pub(super) fn stopwatch(&self) -> Stopwatch {
+        if self.thread_count == 1 { Stopwatch::ThreadCpu } else { Stopwatch::Wall(Clock::system()) }
+    }
+}
+
 /// Steps `world` for the frames of the run. Reports each frame's number to `progress`.
 pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Measurement {
-    let Run { scene, frames, thread_count, threads } = *run;
+    let Run { scene, frames, settle, thread_count, threads } = *run;
     memory::restart_peak();
-    let stopwatch = if thread_count == 1 { Stopwatch::ThreadCpu } else { Stopwatch::Wall(Clock::system()) };
+    for frame in 0..settle {
+        threads.install(|| world.step(&mut Unobserved));
+        progress(frame + 1);
+    }
     let energy_start = meter::mechanical_energy_j(&world);
     let (mut energy_max, mut overlap_max) = (energy_start, 0.0_f32);
-    let mut profile = Profile::new(stopwatch);
+    let mut profile = Profile::new(run.stopwatch());
     let mut times_ms = Vec::with_capacity(frames as usize);
     let mut quarantined = 0;
     for frame in 0..frames {
@@ -90,7 +107,7 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
             energy_max = energy_max.max(meter::mechanical_energy_j(&world));
             overlap_max = overlap_max.max(meter::deepest_overlap_m(&world));
         }
-        progress(frame + 1);
+        progress(settle + frame + 1);
     }
     let later = &times_ms[1..];
     let total_s = later.iter().sum::<f64>() / 1000.0;
@@ -98,7 +115,9 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
         scene: scene.to_owned(),
         bodies: world.bodies().len(),
         frames,
+        settle,
         threads: thread_count,
+        instructions: lanes::in_use().to_string(),
         first_step_ms: times_ms[0],
         step_ms: Spread::of(later),
         stage_ms: profile.mean_ms(frames),
@@ -109,6 +128,7 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
         speed_end_mean: meter::mean_speed(&world),
         quarantined,
         bytes_per_body_frame: None,
+        timeline_frame_ms: None,
         peak_rss_bytes: memory::peak_bytes(),
         state_hash: format!("{:016x}", world.state_hash()),
     }
@@ -116,14 +136,14 @@ pub(crate) fn measure(mut world: World, run: &Run, progress: &dyn Fn(u32)) -> Me
 
 /// What a step's time is taken with.
 #[derive(Debug)]
-enum Stopwatch {
+pub(super) enum Stopwatch {
     ThreadCpu,
     Wall(Clock),
 }
 
 impl Stopwatch {
     /// A reading of which only differences mean something, between readings on the same thread. Milliseconds.
-    fn read_ms(&self) -> f64 {
+    pub(super) fn read_ms(&self) -> f64 {
         match self {
             Stopwatch::ThreadCpu => 1000.0 * ThreadTime::now().as_duration().as_secs_f64(),
             Stopwatch::Wall(clock) => 1000.0 * clock.now().as_secs_f64(),

@@ -2,11 +2,12 @@
 
 use std::num::NonZeroU16;
 
+use forerun::dynamics::lanes::{self, InstructionSet};
 use forerun::{Scene, Threads, TimelineSettings, timeline_of, world_of};
 use serde::Serialize;
 
-use crate::args::BenchArgs;
-use crate::bench::{Measurement, Run, bytes_per_body_frame, measure};
+use crate::args::{BenchArgs, InstructionsArg};
+use crate::bench::{Measurement, Run, add_storage, draw_stages, measure};
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::progress;
@@ -18,6 +19,9 @@ struct BenchReport {
 
 /// `forerun bench`.
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
+    if let Some(most) = args.instructions {
+        limit_instructions(most)?;
+    }
     // The argument's range begins at 1.
     let count = NonZeroU16::new(args.threads).unwrap_or(NonZeroU16::MIN);
     let threads = Threads::exactly(count)?;
@@ -28,26 +32,45 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     }
     let mut measured = Vec::new();
     for (typed, scene) in args.scenes.iter().zip(&scenes) {
-        let bar = progress::bar(u64::from(args.frames), typed);
-        let run = Run { scene: typed, frames: args.frames, thread_count: args.threads, threads: &threads };
+        let bar = progress::bar(u64::from(args.settle) + u64::from(args.frames), typed);
+        let BenchArgs { frames, settle, threads: thread_count, .. } = *args;
+        let run = Run { scene: typed, frames, settle, thread_count, threads: &threads };
         let mut measurement = measure(world_of(scene)?, &run, &|frame| bar.set_position(u64::from(frame)));
-        let timeline = timeline_of(scene, TimelineSettings::default())?;
-        measurement.bytes_per_body_frame = bytes_per_body_frame(timeline, args.frames);
+        let timeline = timeline_of(scene, TimelineSettings { past: 0, ..TimelineSettings::default() })?;
+        add_storage(&mut measurement, timeline, &run);
         bar.finish_and_clear();
         measured.push(measurement);
+    }
+    if let Some(file) = &args.chart {
+        draw_stages(&measured, file)?;
     }
     if args.json { print_json(&BenchReport { scenes: measured }) } else { print_tables(&measured) }
 }
 
+fn limit_instructions(most: InstructionsArg) -> Result<(), Failure> {
+    let most = match most {
+        InstructionsArg::Portable => InstructionSet::Portable,
+        InstructionsArg::Sse2 => InstructionSet::Sse2,
+        InstructionsArg::Avx2 => InstructionSet::Avx2,
+        InstructionsArg::Avx512 => InstructionSet::Avx512,
+    };
+    let chosen = lanes::limit_to(most);
+    if chosen == most {
+        return Ok(());
+    }
+    Err(Failure::Input(format!("--instructions: this processor has no {most}; ask for {chosen} or less")))
+}
+
 fn print_tables(measured: &[Measurement]) -> Result<(), Failure> {
+    print(&format!("kernels: {}\n", lanes::in_use()))?;
     print(
-        "| scene | bodies | frames | threads | mean ms | median ms | p99 ms | max ms | first ms | body-steps/s |",
+        "| scene | bodies | frames | threads | mean ms | median ms | p99 ms | max ms | first ms | first/mean | body-steps/s | ns/body |",
     )?;
-    print("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|")?;
+    print("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|")?;
     for m in measured {
         let (step, rate) = (m.step_ms, m.body_steps_per_s / 1e6);
         print(&format!(
-            "| {} | {} | {} | {} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} | {rate:.2} M |",
+            "| {} | {} | {} | {} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} | {:.2} | {rate:.2} M | {:.0} |",
             m.scene,
             m.bodies,
             m.frames,
@@ -56,7 +79,9 @@ fn print_tables(measured: &[Measurement]) -> Result<(), Failure> {
             step.median,
             step.p99,
             step.max,
-            m.first_step_ms
+            m.first_step_ms,
+            m.first_step_ms / step.mean.max(1e-9),
+            1000.0 / rate
         ))?;
     }
     print(
@@ -68,9 +93,9 @@ fn print_tables(measured: &[Measurement]) -> Result<(), Failure> {
         print(&format!("| {} | {} |", m.scene, cells.join(" | ")))?;
     }
     print(
-        "\n| scene | overlap max mm | at end mm | energy max/first | end speed m/s | B/body/frame | peak MiB | state hash |",
+        "\n| scene | overlap max mm | at end mm | energy max/first | end speed m/s | timeline ms/frame | B/body/frame | peak MiB | peak B/body | state hash |",
     )?;
-    print("|---|---:|---:|---:|---:|---:|---:|---|")?;
+    print("|---|---:|---:|---:|---:|---:|---:|---:|---:|---|")?;
     measured.iter().try_for_each(print_guards)
 }
 
@@ -79,14 +104,16 @@ fn print_guards(m: &Measurement) -> Result<(), Failure> {
         value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
     };
     print(&format!(
-        "| {} | {:.2} | {:.2} | {} | {:.4} | {} | {} | {} |",
+        "| {} | {:.2} | {:.2} | {} | {:.4} | {} | {} | {} | {} | {} |",
         m.scene,
         1000.0 * m.overlap_max_m,
         1000.0 * m.overlap_end_m,
         or_dash(m.energy_max_over_initial, 5),
         m.speed_end_mean,
+        or_dash(m.timeline_frame_ms, 3),
         or_dash(m.bytes_per_body_frame, 1),
         or_dash(m.peak_rss_bytes.map(|bytes| bytes as f64 / 1024.0 / 1024.0), 1),
+        or_dash(m.peak_rss_bytes.map(|bytes| bytes as f64 / m.bodies.max(1) as f64), 0),
         m.state_hash,
     ))
 }

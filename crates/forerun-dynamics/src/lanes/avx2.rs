@@ -2,14 +2,13 @@
 //!
 //! # Safety
 //! Every function here uses AVX instructions without asking. All are inlined into functions that [`dispatched!`](super::dispatched) makes and calls
-//! only after it has detected AVX2; nothing else may use [`Avx2`].
-#![allow(unsafe_code, reason = "the one room that uses processor intrinsics")]
+//! only after AVX2 has been detected; nothing else may use [`Avx2`]. With AVX-512 the same code has 32 registers.
+#![allow(unsafe_code, reason = "one of the rooms that use processor intrinsics")]
 
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
-use super::{LANES, LaneMask, Lanes, Portable, Row};
-use crate::solver::Block;
+use super::{LANES, LaneMask, Lanes, Row};
 
 /// Eight numbers in a register.
 #[derive(Clone, Copy, Debug)]
@@ -21,18 +20,8 @@ pub(crate) struct Avx2(__m256);
 #[repr(transparent)]
 pub(crate) struct Avx2Mask(__m256);
 
-/// The same blocks, their numbers read as registers.
-#[inline(always)]
-pub(crate) fn as_avx2(blocks: &mut [Block<Portable>]) -> &mut [Block<Avx2>] {
-    const {
-        assert!(size_of::<Portable>() == size_of::<Avx2>() && align_of::<Portable>() == align_of::<Avx2>());
-        assert!(size_of::<Block<Portable>>() == size_of::<Block<Avx2>>());
-    }
-    // SAFETY: both are eight f32 at the same alignment; `Block` and all parts of it are repr(C), and every bit pattern is valid.
-    unsafe { std::slice::from_raw_parts_mut(blocks.as_mut_ptr().cast(), blocks.len()) }
-}
-
-impl Lanes for Avx2 {
+// SAFETY: eight f32 at the alignment of 32; every bit pattern is valid.
+unsafe impl Lanes for Avx2 {
     type Mask = Avx2Mask;
 
     #[inline(always)]
@@ -72,19 +61,34 @@ impl Lanes for Avx2 {
         Avx2Mask(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) })
     }
 
+    // The processor's own max and min are the comparisons of the trait: the second where either is NaN, or both are 0.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Avx2(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Avx2(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+
     #[inline(always)]
     fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
-        let row = |lane: usize| unsafe { _mm256_load_ps(rows[index[lane] as usize].0.as_ptr()) };
-        transpose([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)]).map(Avx2)
+        let mut r = [unsafe { _mm256_setzero_ps() }; LANES];
+        for lane in 0..LANES {
+            r[lane] = unsafe { _mm256_load_ps(rows[index[lane] as usize].0.as_ptr()) };
+        }
+        let [a, b, c, d, e, f, g, h] = transpose(r);
+        [Avx2(a), Avx2(b), Avx2(c), Avx2(d), Avx2(e), Avx2(f), Avx2(g), Avx2(h)]
     }
 
     #[inline(always)]
     fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
-        let [a, b, c, d, e, f] = values.map(|v| v.0);
+        let [a, b, c, d, e, f] = values;
         let zero = unsafe { _mm256_setzero_ps() };
-        let columns = transpose([a, b, c, d, e, f, zero, zero]);
-        for (lane, column) in columns.into_iter().enumerate() {
-            unsafe { _mm256_store_ps(rows[index[lane] as usize].0.as_mut_ptr(), column) };
+        let columns = transpose([a.0, b.0, c.0, d.0, e.0, f.0, zero, zero]);
+        for lane in 0..LANES {
+            unsafe { _mm256_store_ps(rows[index[lane] as usize].0.as_mut_ptr(), columns[lane]) };
         }
     }
 }

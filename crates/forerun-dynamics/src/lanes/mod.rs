@@ -1,24 +1,40 @@
 //! Lanes: eight numbers at a time, with the same bits on every processor.
 //!
-//! Kernels are written once over [`Lanes`] and compiled for plain arrays and, on x86-64, for AVX2; [`dispatched!`] chooses at run time. Only
-//! + - * / sqrt and comparisons, no fused multiply-add, so that all forms give equal bits.
+//! Kernels are written once over [`Lanes`] and compiled for plain arrays and, on x86-64, for SSE2, AVX2 and AVX-512; `dispatched!` chooses at run
+//! time, see [`InstructionSet`]. Only + - * / sqrt and comparisons, no fused multiply-add, so that all forms give equal bits.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "kernels walk several short arrays side by side; closures would not be compiled for the instruction set"
+)]
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+mod instruction_set;
 mod portable;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests;
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx2::{Avx2, as_avx2};
+pub(crate) use avx2::Avx2;
+pub use instruction_set::{InstructionSet, in_use, limit_to};
 pub(crate) use portable::Portable;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use sse2::Sse2;
 
 /// How many contacts are solved side by side. Eight was measured to beat four and sixteen.
 pub(crate) const LANES: usize = 8;
 
 /// Eight numbers.
-pub(crate) trait Lanes:
+///
+/// # Safety
+/// Implementations are eight f32, 32 bytes at that alignment, for which every bit pattern is valid.
+#[allow(unsafe_code, reason = "blocks of one form are read as blocks of another")]
+pub(crate) unsafe trait Lanes:
     Copy
     + Debug
     + Add<Output = Self>
@@ -61,7 +77,7 @@ pub(crate) trait Lanes:
         other.lt(self)
     }
 
-    // By comparison: the processors' own max and min differ for NaN and -0.
+    // The second where either is NaN, or both are 0.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.gt(other).select(self, other)
@@ -201,84 +217,69 @@ pub(crate) fn scatter_twist<F: Lanes>(rows: &mut [Row], index: &[u32; LANES], tw
     F::scatter(rows, index, [l.x, l.y, l.z, a.x, a.y, a.z]);
 }
 
-/// Defines a function over blocks (or over plain data) that runs the given kernel in the fastest form the processor has.
+/// Records that are made of eight numbers in whatever form, and of plain integers.
+///
+/// # Safety
+/// `Of<F>` is `repr(C)`, holds `F`s and integers alone, and for every `F` the same ones in the same places.
+#[allow(unsafe_code, reason = "blocks of one form are read as blocks of another")]
+pub(crate) unsafe trait Record {
+    /// The record with its numbers as `F`.
+    type Of<F: Lanes>;
+}
+
+/// The same records, their numbers read in another form.
+#[inline(always)]
+pub(crate) fn recast<F: Lanes, R: Record>(records: &[R::Of<Portable>]) -> &[R::Of<F>] {
+    const { assert_alike::<R::Of<Portable>, R::Of<F>>() };
+    // SAFETY: `Record` promises the same layout, `Lanes` that every bit pattern is valid.
+    #[allow(unsafe_code, reason = "see above")]
+    unsafe {
+        std::slice::from_raw_parts(records.as_ptr().cast(), records.len())
+    }
+}
+
+/// As [`recast`], to be changed.
+#[inline(always)]
+pub(crate) fn recast_mut<F: Lanes, R: Record>(records: &mut [R::Of<Portable>]) -> &mut [R::Of<F>] {
+    const { assert_alike::<R::Of<Portable>, R::Of<F>>() };
+    // SAFETY: as in `recast`.
+    #[allow(unsafe_code, reason = "see above")]
+    unsafe {
+        std::slice::from_raw_parts_mut(records.as_mut_ptr().cast(), records.len())
+    }
+}
+
+const fn assert_alike<A, B>() {
+    assert!(size_of::<A>() == size_of::<B>() && align_of::<A>() == align_of::<B>());
+}
+
+/// Defines a function that runs the given kernel in the fastest form that may be used.
 macro_rules! dispatched {
-    ($(#[$meta:meta])* $vis:vis fn $name:ident($blocks:ident: &mut [Block] $(, $arg:ident: $type:ty)* $(,)?) => $kernel:ident) => {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident $(<$K:ident: $bound:ident>)? ($($arg:ident: $type:ty),* $(,)?) => $kernel:ident) => {
         $(#[$meta])*
-        $vis fn $name($blocks: &mut [$crate::solver::Block<$crate::lanes::Portable>] $(, $arg: $type)*) {
+        $vis fn $name $(<$K: $bound>)? ($($arg: $type),*) {
             #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
-                #[target_feature(enable = "avx2")]
-                fn avx2($blocks: &mut [$crate::solver::Block<$crate::lanes::Avx2>] $(, $arg: $type)*) {
-                    $kernel($blocks $(, $arg)*);
+            {
+                use $crate::lanes::{Avx2, InstructionSet, Sse2};
+                #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq")]
+                fn avx512 $(<$K: $bound>)? ($($arg: $type),*) {
+                    $kernel::<Avx2 $(, $K)?>($($arg),*);
                 }
-                // SAFETY: the processor has AVX2, which is all that the function needs.
-                #[allow(unsafe_code, reason = "the one call that needs a processor feature, checked above")]
-                return unsafe { avx2($crate::lanes::as_avx2($blocks) $(, $arg)*) };
-            }
-            $kernel($blocks $(, $arg)*);
-        }
-    };
-    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) => $kernel:ident) => {
-        $(#[$meta])*
-        $vis fn $name($($arg: $type),*) {
-            #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
                 #[target_feature(enable = "avx2")]
-                fn avx2($($arg: $type),*) {
-                    $kernel::<$crate::lanes::Avx2>($($arg),*);
+                fn avx2 $(<$K: $bound>)? ($($arg: $type),*) {
+                    $kernel::<Avx2 $(, $K)?>($($arg),*);
                 }
-                // SAFETY: the processor has AVX2, which is all that the function needs.
-                #[allow(unsafe_code, reason = "the one call that needs a processor feature, checked above")]
-                return unsafe { avx2($($arg),*) };
+                // SAFETY: `in_use` names only what the processor has.
+                #[allow(unsafe_code, reason = "the calls that need processor features, checked by in_use")]
+                match $crate::lanes::in_use() {
+                    InstructionSet::Avx512 => return unsafe { avx512 $(::<$K>)? ($($arg),*) },
+                    InstructionSet::Avx2 => return unsafe { avx2 $(::<$K>)? ($($arg),*) },
+                    InstructionSet::Sse2 => return $kernel::<Sse2 $(, $K)?>($($arg),*),
+                    InstructionSet::Portable => {}
+                }
             }
-            $kernel::<$crate::lanes::Portable>($($arg),*);
+            $kernel::<$crate::lanes::Portable $(, $K)?>($($arg),*);
         }
     };
 }
 pub(crate) use dispatched;
-
-#[cfg(all(test, target_arch = "x86_64"))]
-mod tests {
-    use super::*;
-
-    /// A little of everything, on awkward numbers.
-    #[inline(always)]
-    fn mix<F: Lanes>(a: [f32; LANES], b: [f32; LANES]) -> [[f32; LANES]; 6] {
-        let (x, y) = (F::from_array(a), F::from_array(b));
-        let rows: Vec<Row> = (0..9).map(|i| Row(std::array::from_fn(|k| a[k] + i as f32 * b[k]))).collect();
-        let g = F::gather(&rows, &[8, 3, 1, 0, 2, 7, 5, 4]);
-        let mut out = rows.clone();
-        F::scatter(&mut out, &[0, 1, 2, 3, 4, 5, 6, 7], [g[5], g[4], g[3], g[2], g[1], g[0]]);
-        [
-            (x * y + x / y - (x * x + y * y).sqrt()).to_array(),
-            x.lt(y).select(x.max(y), -x.abs().min(y)).to_array(),
-            (x.le(y) & y.gt(F::zero()) | x.lt(F::splat(-2.0))).select(g[6], g[7]).to_array(),
-            g[2].to_array(),
-            out[3].0,
-            out[6].0,
-        ]
-    }
-
-    #[test]
-    fn avx2_gives_the_bits_of_plain_arrays() {
-        #[target_feature(enable = "avx2")]
-        fn with_avx2(a: [f32; LANES], b: [f32; LANES]) -> [[f32; LANES]; 6] {
-            mix::<Avx2>(a, b)
-        }
-        if !std::arch::is_x86_feature_detected!("avx2") {
-            return;
-        }
-        let a = [1.0, -0.0, 3.7e-39, -5.5, 1e30, f32::MIN_POSITIVE, -2.25, 0.1];
-        let b = [3.0, 0.0, -7.1, -5.5, 1e-30, 0.3, 0.7, -1e20];
-        for turn in 0..LANES {
-            let mut c = b;
-            c.rotate_left(turn);
-            // SAFETY: AVX2 was detected.
-            #[allow(unsafe_code, reason = "calls a function that needs AVX2, checked above")]
-            let fast = unsafe { with_avx2(a, c) };
-            let bits = |x: [[f32; LANES]; 6]| x.map(|r| r.map(|v| if v.is_nan() { 0 } else { v.to_bits() }));
-            assert_eq!(bits(fast), bits(mix::<Portable>(a, c)));
-        }
-    }
-}

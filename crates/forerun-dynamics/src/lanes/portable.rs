@@ -1,4 +1,5 @@
 //! Lanes as plain arrays: every target has these.
+#![allow(unsafe_code, reason = "says of its layout what the other rooms rely on")]
 
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
@@ -31,7 +32,8 @@ impl Portable {
     }
 }
 
-impl Lanes for Portable {
+// SAFETY: eight f32 at the alignment of 32; every bit pattern is valid.
+unsafe impl Lanes for Portable {
     type Mask = PortableMask;
 
     #[inline(always)]

@@ -77,6 +77,11 @@ struct Faces<F: Lanes> {
 }
 
 #[inline(always)]
+fn along_each<F: Lanes>(x: V8<F>, axes: &[V8<F>; 3]) -> [F; 3] {
+    [x.dot(axes[0]), x.dot(axes[1]), x.dot(axes[2])]
+}
+
+#[inline(always)]
 fn choose_faces<F: Lanes>(a: &Box8<F>, b: &Box8<F>, axes: &Axes<F>) -> Faces<F> {
     let on_second = axes.face.gt(F::splat(2.5));
     let k = on_second.select(axes.face - F::splat(3.0), axes.face);
@@ -99,16 +104,16 @@ fn choose_faces<F: Lanes>(a: &Box8<F>, b: &Box8<F>, axes: &Axes<F>) -> Faces<F> 
     let normal = axis.dot(between).lt(F::zero()).select_v(-axis, axis);
 
     // Incident face: the one that looks most against the normal.
-    let e = incident.map(|i| normal.dot(i));
-    let ae = e.map(F::abs);
+    let e = [normal.dot(incident[0]), normal.dot(incident[1]), normal.dot(incident[2])];
+    let ae = [e[0].abs(), e[1].abs(), e[2].abs()];
     let (j0, j1) = (ae[1].le(ae[0]) & ae[2].le(ae[0]), ae[2].le(ae[1]));
     let out = pick_v(j0, j1, incident);
     let out_sign = pick(j0, j1, e).lt(F::zero()).select(F::one(), -F::one());
     let centre = between + out * (pick(j0, j1, ih) * out_sign);
     let p = pick_v(j0, j1, [incident[1], incident[2], incident[0]]) * pick(j0, j1, [ih[1], ih[2], ih[0]]);
     let q = pick_v(j0, j1, [incident[2], incident[0], incident[1]]) * pick(j0, j1, [ih[2], ih[0], ih[1]]);
-    let seen = |x: V8<F>| [x.dot(u), x.dot(v), x.dot(normal)];
-    let mut c = seen(centre);
+    let frame = [u, v, normal];
+    let mut c = along_each(centre, &frame);
     c[2] -= half_n;
     Faces {
         origin: on_second.select_v(b.centre, a.centre),
@@ -119,8 +124,8 @@ fn choose_faces<F: Lanes>(a: &Box8<F>, b: &Box8<F>, axes: &Axes<F>) -> Faces<F> 
         half_u: pick(k0, k1, [rh[1], rh[2], rh[0]]),
         half_v: pick(k0, k1, [rh[2], rh[0], rh[1]]),
         centre: c,
-        p: seen(p),
-        q: seen(q),
+        p: along_each(p, &frame),
+        q: along_each(q, &frame),
         on_second,
     }
 }
@@ -224,15 +229,18 @@ pub(super) fn clip_faces<F: Lanes>(a: &Box8<F>, b: &Box8<F>, axes: &Axes<F>, mar
         chosen_index[k] = best_index;
     }
     let normal = f.on_second.select_v(-f.normal, f.normal);
-    let points = chosen.map(|c| {
+    let mut clipped = Clipped {
+        normal: [normal.x.to_array(), normal.y.to_array(), normal.z.to_array()],
+        points: [[[0.0; LANES]; 3]; 4],
+        separation: [[0.0; LANES]; 4],
+        valid: [[0.0; LANES]; 4],
+    };
+    for (k, c) in chosen.iter().enumerate() {
         let height = f.half_n + c.separation * F::splat(0.5);
         let p = f.origin + f.u * c.u + f.v * c.v + f.normal * height;
-        [p.x, p.y, p.z].map(F::to_array)
-    });
-    Clipped {
-        normal: [normal.x, normal.y, normal.z].map(F::to_array),
-        points,
-        separation: chosen.map(|c| c.separation.to_array()),
-        valid: chosen.map(|c| c.valid.to_array()),
+        clipped.points[k] = [p.x.to_array(), p.y.to_array(), p.z.to_array()];
+        clipped.separation[k] = c.separation.to_array();
+        clipped.valid[k] = c.valid.to_array();
     }
+    clipped
 }

@@ -3,9 +3,11 @@
 //! Faces are preferred to edges and the first box's faces to the second's by fixed lengths. This takes the place of the hysteresis
 //! that other engines keep from step to step: a stack at rest gets the same manifold in every step.
 
-use forerun_geometry::{ContactPoint, Manifold, Pose, Vec3};
+use forerun_geometry::{ContactPoint, Manifold, Shape, Vec3};
 
 use super::cuboid_faces::clip_faces;
+use super::{Contact, FAST, Outlook};
+use crate::bounds::MOTION_FACTOR;
 use crate::lanes::{LANES, LaneMask, Lanes, Row, V8, dispatched};
 
 /// An edge-edge axis must separate by this much more than the best face. Metres.
@@ -15,31 +17,43 @@ const FIRST_BOX_PREFERENCE_M: f32 = 1e-3;
 /// Of candidates that are equal up to this, the earlier one wins. Metres.
 pub(super) const TIE_M: f32 = 1e-5;
 
-/// Boxes in the form that the lanes gather: centre and half extents, and two of the axes.
-#[derive(Debug, Default)]
+/// Boxes in the form that the lanes gather, at the places of their members.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Boxes {
+    /// Centre, half extents, first two components of the displacement in the frame.
     centres: Vec<Row>,
+    /// Two of the axes, third component of the displacement, sway.
     axes: Vec<Row>,
-}
-
-/// A pair of boxes to be tested.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BoxPair {
-    /// Where in the list of all pairs it stands.
-    pub(super) slot: u32,
-    pub(super) first: u32,
-    pub(super) second: u32,
-    pub(super) margin: f32,
+    is_box: Vec<bool>,
+    contact_margin_m: f32,
 }
 
 impl Boxes {
-    /// Adds a box and returns its index.
-    pub(super) fn push(&mut self, half_extents: Vec3, pose: &Pose) -> u32 {
-        let (p, h, m) = (pose.position, half_extents, pose.axes());
-        let (u, v) = (m.x_axis, m.y_axis);
-        self.centres.push(Row([p.x, p.y, p.z, h.x, h.y, h.z, 0.0, 0.0]));
-        self.axes.push(Row([u.x, u.y, u.z, v.x, v.y, v.z, 0.0, 0.0]));
-        self.centres.len() as u32 - 1
+    /// Replaces all boxes.
+    pub(super) fn fill(&mut self, bodies: &Outlook) {
+        let Boxes { centres, axes, is_box, contact_margin_m } = self;
+        *contact_margin_m = bodies.environment.settings.contact_margin_m;
+        centres.clear();
+        axes.clear();
+        is_box.clear();
+        for (member, prospect) in bodies.members.iter().zip(bodies.prospects) {
+            let Shape::Cuboid(cuboid) = &member.body.shape else {
+                centres.push(Row::default());
+                axes.push(Row::default());
+                is_box.push(false);
+                continue;
+            };
+            let (p, h, l) = (prospect.pose.position, cuboid.half_extents, prospect.motion.linear);
+            let m = prospect.pose.axes();
+            let (u, v) = (m.x_axis, m.y_axis);
+            centres.push(Row([p.x, p.y, p.z, h.x, h.y, h.z, l.x, l.y]));
+            axes.push(Row([u.x, u.y, u.z, v.x, v.y, v.z, l.z, prospect.sway_m]));
+            is_box.push(true);
+        }
+    }
+
+    pub(super) fn is_box(&self, member: u32) -> bool {
+        self.is_box[member as usize]
     }
 }
 
@@ -48,6 +62,9 @@ pub(super) struct Box8<F: Lanes> {
     pub(super) centre: V8<F>,
     pub(super) half: [F; 3],
     pub(super) axes: [V8<F>; 3],
+    /// Displacement in the frame.
+    linear: V8<F>,
+    sway: F,
 }
 
 impl<F: Lanes> Box8<F> {
@@ -56,51 +73,76 @@ impl<F: Lanes> Box8<F> {
         let c = F::gather(&boxes.centres, index);
         let a = F::gather(&boxes.axes, index);
         let (u, v) = (V8 { x: a[0], y: a[1], z: a[2] }, V8 { x: a[3], y: a[4], z: a[5] });
-        Box8 { centre: V8 { x: c[0], y: c[1], z: c[2] }, half: [c[3], c[4], c[5]], axes: [u, v, u.cross(v)] }
+        Box8 {
+            centre: V8 { x: c[0], y: c[1], z: c[2] },
+            half: [c[3], c[4], c[5]],
+            axes: [u, v, u.cross(v)],
+            linear: V8 { x: c[6], y: c[7], z: a[6] },
+            sway: a[7],
+        }
     }
 }
 
 dispatched! {
-    /// Appends the manifold of every pair that comes nearer than its margin, with the pair's slot, in the pairs' order.
-    pub(super) fn cuboid_manifolds(
+    /// Appends the contact of every pair of boxes that comes nearer than its margin, in the pairs' order; fast pairs go to `fast` instead.
+    pub(super) fn cuboid_contacts(
         boxes: &Boxes,
-        pairs: &[BoxPair],
-        out: &mut Vec<(u32, Manifold)>,
+        pairs: &[(u32, u32)],
+        out: &mut Vec<Contact>,
+        fast: &mut Vec<(u32, u32)>,
     ) => cuboid_lanes
 }
 
 #[inline(always)]
-fn cuboid_lanes<F: Lanes>(boxes: &Boxes, pairs: &[BoxPair], out: &mut Vec<(u32, Manifold)>) {
+fn cuboid_lanes<F: Lanes>(
+    boxes: &Boxes,
+    pairs: &[(u32, u32)],
+    out: &mut Vec<Contact>,
+    fast: &mut Vec<(u32, u32)>,
+) {
+    let contact_margin = F::splat(boxes.contact_margin_m);
     for chunk in pairs.chunks(LANES) {
-        let mut first = [chunk[0].first; LANES];
-        let mut second = [chunk[0].second; LANES];
-        let mut margin = [f32::MIN; LANES];
+        let (mut first, mut second) = ([chunk[0].0; LANES], [chunk[0].1; LANES]);
         for (lane, pair) in chunk.iter().enumerate() {
-            first[lane] = pair.first;
-            second[lane] = pair.second;
-            margin[lane] = pair.margin;
+            (first[lane], second[lane]) = *pair;
         }
         let (a, b) = (Box8::gather(boxes, &first), Box8::gather(boxes, &second));
-        manifolds_of_eight(&a, &b, F::from_array(margin), chunk, out);
+        let margin = pair_margins(&a, &b, contact_margin);
+        let here = (1 << chunk.len()) - 1;
+        let quick = margin.gt(contact_margin * F::splat(FAST)).bits() & here;
+        if quick != 0 {
+            fast.extend(chunk.iter().enumerate().filter(|(lane, _)| quick >> lane & 1 == 1).map(|(_, p)| *p));
+        }
+        let wanted = here & !quick;
+        if wanted != 0 {
+            manifolds_of_eight::<F>((&a, &b), margin, (chunk, wanted), out);
+        }
     }
+}
+
+/// [`pair_margin`](crate::bounds::pair_margin) of eight pairs.
+#[inline(always)]
+fn pair_margins<F: Lanes>(a: &Box8<F>, b: &Box8<F>, contact_margin: F) -> F {
+    let between = a.linear - b.linear;
+    let square = between.dot(between).max(a.linear.dot(a.linear)).max(b.linear.dot(b.linear));
+    contact_margin.max((square.sqrt() + a.sway + b.sway) * F::splat(MOTION_FACTOR))
 }
 
 #[inline(always)]
 fn manifolds_of_eight<F: Lanes>(
-    a: &Box8<F>,
-    b: &Box8<F>,
+    (a, b): (&Box8<F>, &Box8<F>),
     margin: F,
-    chunk: &[BoxPair],
-    out: &mut Vec<(u32, Manifold)>,
+    (pairs, wanted): (&[(u32, u32)], u32),
+    out: &mut Vec<Contact>,
 ) {
     let axes = separating_axes(a, b);
-    let near = axes.separation.lt(margin).bits();
+    let near = axes.separation.lt(margin).bits() & wanted;
     if near == 0 {
         return;
     }
     let by_edge = axes.use_edge.bits();
     let clipped = clip_faces(a, b, &axes, margin);
-    for (lane, pair) in chunk.iter().enumerate() {
+    for (lane, &(first, second)) in pairs.iter().enumerate() {
         if near >> lane & 1 == 0 {
             continue;
         }
@@ -110,7 +152,7 @@ fn manifolds_of_eight<F: Lanes>(
             clipped.lane(lane)
         };
         if manifold.count > 0 {
-            out.push((pair.slot, manifold));
+            out.push(Contact { first, second, manifold });
         }
     }
 }
@@ -130,8 +172,8 @@ pub(super) struct Axes<F: Lanes> {
 #[inline(always)]
 fn separating_axes<F: Lanes>(a: &Box8<F>, b: &Box8<F>) -> Axes<F> {
     let between = b.centre - a.centre;
-    let ta = a.axes.map(|axis| between.dot(axis));
-    let tb = b.axes.map(|axis| between.dot(axis));
+    let ta = [between.dot(a.axes[0]), between.dot(a.axes[1]), between.dot(a.axes[2])];
+    let tb = [between.dot(b.axes[0]), between.dot(b.axes[1]), between.dot(b.axes[2])];
     let mut c = [[F::zero(); 3]; 3];
     let mut ac = [[F::zero(); 3]; 3];
     for i in 0..3 {

@@ -8,17 +8,21 @@
 
 mod cuboid_faces;
 mod cuboids;
+mod merge;
 #[cfg(test)]
 mod tests;
 
-use forerun_geometry::{Manifold, Motion, Placed, Pose, Shape};
+use forerun_geometry::{Manifold, Placed};
 use rayon::prelude::*;
 
-use self::cuboids::{BoxPair, Boxes, cuboid_manifolds};
-use crate::{Environment, Member, bounds};
+use self::cuboids::{Boxes, cuboid_contacts};
+use crate::bounds::{Prospect, pair_margin};
+use crate::{Environment, Member};
 
 /// A pair is fast when its contacts are looked for this many contact margins ahead.
 const FAST: f32 = 2.0;
+/// Spheres are taken to be larger by this factor, so that no contact is lost to rounding.
+const ROUNDING: f32 = 1.001;
 /// Pairs that one task looks at; small enough to share out, large enough to fill the lanes.
 const PAIRS_PER_TASK: usize = 512;
 
@@ -39,85 +43,104 @@ pub fn find_contacts(members: &[Member], pairs: &[(u32, u32)], environment: &Env
     if pairs.is_empty() {
         return Vec::new();
     }
-    let placed: Vec<(Motion, Pose)> = members
-        .iter()
-        .map(|m| (bounds::motion(m.body, &m.state, environment), m.body.own_pose(&m.state)))
-        .collect();
-    let mut boxes = Boxes::default();
-    let box_of: Vec<u32> = (members.iter().zip(&placed))
-        .map(|(m, (_, pose))| match &m.body.shape {
-            Shape::Cuboid(cuboid) => boxes.push(cuboid.half_extents, pose),
-            _ => u32::MAX,
-        })
-        .collect();
-    let found = Finder { members, placed: &placed, boxes: &boxes, box_of: &box_of, environment };
-    if pairs.len() <= PAIRS_PER_TASK {
-        return found.contacts(pairs);
-    }
-    // Collected in the order of the chunks, whoever finishes first.
-    let chunks: Vec<Vec<Contact>> =
-        pairs.par_chunks(PAIRS_PER_TASK).map(|chunk| found.contacts(chunk)).collect();
-    chunks.concat()
+    let prospects: Vec<Prospect> =
+        members.iter().map(|m| Prospect::new(m.body, &m.state, environment)).collect();
+    let bodies = Outlook { members, prospects: &prospects, environment };
+    let mut contacts = Vec::new();
+    NarrowPhase::default().find_contacts(&bodies, pairs, &mut contacts);
+    contacts
 }
 
-struct Finder<'a> {
-    members: &'a [Member<'a>],
-    placed: &'a [(Motion, Pose)],
-    boxes: &'a Boxes,
-    /// Index among the boxes, or `u32::MAX`.
-    box_of: &'a [u32],
-    environment: &'a Environment,
+/// Bodies, and how each is expected to go through the frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Outlook<'a> {
+    /// The bodies.
+    pub members: &'a [Member<'a>],
+    /// The prospect of each member in `environment`.
+    pub prospects: &'a [Prospect],
+    /// Gravity and settings.
+    pub environment: &'a Environment,
 }
 
-impl Finder<'_> {
-    fn contacts(&self, pairs: &[(u32, u32)]) -> Vec<Contact> {
-        let mut box_pairs = Vec::new();
-        let mut others = Vec::new();
-        let mut manifolds = Vec::new();
-        for (slot, &(first, second)) in pairs.iter().enumerate() {
-            let (i, j) = (first as usize, second as usize);
-            let margin = self.margin(i, j);
-            let boxes = self.box_of[i] != u32::MAX && self.box_of[j] != u32::MAX;
-            // Fast boxes may meet in a corner, or pass each other: the lanes know only faces and edges.
-            if boxes && margin <= FAST * self.environment.settings.contact_margin_m {
-                box_pairs.push(BoxPair {
-                    slot: slot as u32,
-                    first: self.box_of[i],
-                    second: self.box_of[j],
-                    margin,
-                });
-            } else {
-                forerun_geometry::contact::contact_manifolds(
-                    &self.placed(i),
-                    &self.placed(j),
-                    margin,
-                    &mut manifolds,
-                );
-                others.extend(manifolds.drain(..).map(|m| (slot as u32, m)));
-            }
+/// The memory that the search needs, to be used again from step to step. It remembers nothing.
+#[derive(Clone, Debug, Default)]
+pub struct NarrowPhase {
+    boxes: Boxes,
+    search: Search,
+}
+
+impl NarrowPhase {
+    /// As [`find_contacts`]; replaces what `contacts` held.
+    pub fn find_contacts(&mut self, bodies: &Outlook, pairs: &[(u32, u32)], contacts: &mut Vec<Contact>) {
+        contacts.clear();
+        if pairs.is_empty() {
+            return;
         }
-        let mut found = Vec::with_capacity(box_pairs.len());
-        cuboid_manifolds(self.boxes, &box_pairs, &mut found);
-        if !others.is_empty() {
-            // Every pair is in one of the two lists; a stable sort by slot restores the order of the pairs.
-            found.append(&mut others);
-            found.sort_by_key(|(slot, _)| *slot);
+        self.boxes.fill(bodies);
+        let boxes = &self.boxes;
+        if pairs.len() <= PAIRS_PER_TASK || rayon::current_num_threads() == 1 {
+            self.search.run(bodies, boxes, pairs, contacts);
+            return;
         }
-        (found.into_iter())
-            .map(|(slot, manifold)| {
-                let (first, second) = pairs[slot as usize];
-                Contact { first, second, manifold }
+        // Joined in the order of the chunks, whoever finishes first.
+        let chunks: Vec<Vec<Contact>> = (pairs.par_chunks(PAIRS_PER_TASK))
+            .map(|chunk| {
+                let mut contacts = Vec::with_capacity(chunk.len());
+                Search::default().run(bodies, boxes, chunk, &mut contacts);
+                contacts
             })
-            .collect()
+            .collect();
+        contacts.reserve(chunks.iter().map(Vec::len).sum());
+        chunks.iter().for_each(|chunk| contacts.extend_from_slice(chunk));
     }
+}
 
-    fn placed(&self, i: usize) -> Placed<'_> {
-        let (motion, pose) = self.placed[i];
-        Placed { shape: &self.members[i].body.shape, pose, motion }
-    }
+/// The memory of one task.
+#[derive(Clone, Debug, Default)]
+struct Search {
+    box_pairs: Vec<(u32, u32)>,
+    other_pairs: Vec<(u32, u32)>,
+    /// Pairs of boxes that are fast: they may meet in a corner, or pass each other, and the lanes know only faces and edges.
+    fast: Vec<(u32, u32)>,
+    manifolds: Vec<Manifold>,
+    others: Vec<Contact>,
+}
 
-    fn margin(&self, i: usize, j: usize) -> f32 {
-        let of = |i: usize| (self.placed[i].0, self.members[i].body.radius);
-        bounds::pair_margin(&of(i), &of(j), self.environment)
+impl Search {
+    fn run(&mut self, bodies: &Outlook, boxes: &Boxes, pairs: &[(u32, u32)], contacts: &mut Vec<Contact>) {
+        self.box_pairs.clear();
+        self.other_pairs.clear();
+        self.fast.clear();
+        self.others.clear();
+        for &(first, second) in pairs {
+            let both_boxes = boxes.is_box(first) && boxes.is_box(second);
+            if both_boxes { &mut self.box_pairs } else { &mut self.other_pairs }.push((first, second));
+        }
+        cuboid_contacts(boxes, &self.box_pairs, contacts, &mut self.fast);
+        if !self.fast.is_empty() {
+            self.other_pairs.append(&mut self.fast);
+            self.other_pairs.sort_unstable();
+        }
+        for &(first, second) in &self.other_pairs {
+            let (a, b) = (first as usize, second as usize);
+            let placed = |i: usize| Placed {
+                shape: &bodies.members[i].body.shape,
+                pose: bodies.prospects[i].pose,
+                motion: bodies.prospects[i].motion,
+            };
+            let margin = pair_margin(&bodies.prospects[a], &bodies.prospects[b], bodies.environment);
+            if spheres_apart(&bodies.members[a], &bodies.members[b], margin) {
+                continue;
+            }
+            forerun_geometry::contact::contact_manifolds(&placed(a), &placed(b), margin, &mut self.manifolds);
+            self.others.extend(self.manifolds.drain(..).map(|manifold| Contact { first, second, manifold }));
+        }
+        merge::insert(contacts, &self.others);
     }
+}
+
+/// Whether even the spheres around the two are farther apart than the margin: bounds of round things overlap in their corners.
+fn spheres_apart(a: &Member, b: &Member, margin: f32) -> bool {
+    let reach = (a.body.radius + b.body.radius + margin) * ROUNDING;
+    (a.state.position - b.state.position).length_squared() > reach * reach
 }

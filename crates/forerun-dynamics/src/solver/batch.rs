@@ -2,25 +2,26 @@
 //!
 //! *Invariant:* the next states of an island do not depend on which other islands share its batch.
 
-use forerun_geometry::{Shape, Vec3};
+use forerun_geometry::{Manifold, Shape, Vec3};
 
-use super::blocks::{Block, arrange};
+use super::arrange::{Arranger, Order};
 use super::bodies::Bodies;
-use super::collisions::{Moving, resolve_collisions};
+use super::collisions::Moving;
 use super::contact_graph::ContactGraph;
-use super::impulses::{ImpulseSums, add_substep};
+use super::energy_guard::{EnergyGuard, Guarded, Guarding};
+use super::impulses::ImpulseSums;
 use super::islands::Islands;
-use super::load::{Load, LoadPass, Strain};
+use super::load::{LoadPass, Loads};
+use super::manifolds::Source;
 use super::positions::moved;
-use super::prepare::{Source, prepare};
-use super::rest::{IslandsAt, endings, settle};
-use super::shock::{propagate_classic, propagate_shock};
+use super::prepare::{Common, prepare};
+use super::rest::{Ending, Resting};
+use super::rows::{OnlyHard, Rows};
 use super::standing::StandingPass;
-use super::sweep::{relax, sweep};
+use super::substep::{displace, fall, note_pushes};
 use super::velocities::integrate_velocities;
-use super::warm_start::{EnergyGuard, Guarded, apply_impulses, remove_momentum};
-use crate::lanes::{Portable, Row};
 use crate::narrow_phase::Contact;
+use crate::scratch::{emptied, fill};
 use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
 
 /// An island is hard when the load pass leaves more than this part of its weight to the sweeps: stacks and pyramids leave none, a heap most of it.
@@ -30,57 +31,108 @@ const HARD_PART: f64 = 0.1;
 /// and by 10 mm with them, at a cost of 4 %.
 const HARD_PUSHES: usize = 2;
 
-/// Some islands, with the bodies that do not yield but that they touch.
+/// A contact of a batch: who touches, and where that is written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ends {
+    /// Index of the body with the lower id.
+    pub(crate) first: u32,
+    /// Index of the other.
+    pub(crate) second: u32,
+    /// Index among the contacts that were found.
+    pub(crate) contact: u32,
+}
+
+/// The contacts of a batch, in canonical order within an island.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactList<'a> {
+    pub(crate) ends: &'a [Ends],
+    /// What was found, for this batch or for more: who touches is said in other numbers here.
+    pub(crate) found: &'a [Contact],
+}
+
+impl<'a> ContactList<'a> {
+    /// Where contact `k` of the batch touches.
+    pub(crate) fn manifold(&self, k: usize) -> &'a Manifold {
+        &self.found[self.ends[k].contact as usize].manifold
+    }
+}
+
+/// Some islands, with the bodies that do not yield but that they touch. Kept from step to step for its memory.
+#[derive(Debug, Default)]
 pub(crate) struct Batch<'a> {
-    /// Sorted by id.
+    /// Those that yield, by id within an island; then the others.
     pub(crate) members: Vec<Member<'a>>,
-    /// In canonical order; indices into `members`.
-    pub(crate) contacts: Vec<Contact>,
+    /// By member: its index in the group.
+    pub(crate) sources: Vec<u32>,
+    /// See [`ContactList`].
+    pub(crate) ends: Vec<Ends>,
+    pub(crate) found: &'a [Contact],
+    pub(crate) islands: Islands,
     /// `settings.frame_seconds` is the length of the slice.
     pub(crate) environment: Environment,
     /// By contact; see [`Batch::record_impulses`].
     pub(crate) impulses: ImpulseSums,
+    /// By member: the state at the end.
+    pub(crate) next: Vec<BodyState>,
     bodies: Bodies,
     dynamic: Vec<bool>,
-    islands: Islands,
     graph: ContactGraph,
-    /// First those of easy islands, then those of hard ones.
-    blocks: Vec<Block<Portable>>,
-    easy_blocks: usize,
+    loads: Loads,
+    rows: Rows,
+    arranger: Arranger,
+    guard: EnergyGuard,
     spins: Vec<Vec3>,
+    endings: Vec<Ending>,
     bounces: bool,
+    /// By island: whether a moving kinematic body touches it.
+    driven: Vec<bool>,
 }
 
 impl<'a> Batch<'a> {
-    /// A batch at the start of its frame or slice.
-    pub(crate) fn new(
-        members: Vec<Member<'a>>,
-        contacts: Vec<Contact>,
-        environment: Environment,
-    ) -> Batch<'a> {
-        let dynamic: Vec<bool> = members.iter().map(|m| m.body.is_dynamic()).collect();
-        let ends = contacts.iter().map(|c| (c.first, c.second));
-        let islands = Islands::find(members.len(), |i| dynamic[i], ends);
-        let bounces = members.iter().any(|m| m.body.material.restitution > 0.0);
+    /// Once members, contacts and islands are there: the start of their frame or slice.
+    pub(crate) fn start(&mut self, environment: &Environment, found: &'a [Contact]) {
+        self.environment = *environment;
+        self.found = found;
+        self.dynamic.clear();
+        self.dynamic.extend(self.members.iter().map(|m| m.body.is_dynamic()));
+        self.bounces = self.members.iter().any(|m| m.body.material.restitution > 0.0);
+        self.impulses.clear();
+        self.find_driven();
+    }
+
+    /// The memory alone.
+    pub(crate) fn emptied<'b>(self) -> Batch<'b> {
         Batch {
-            members,
-            contacts,
-            environment,
-            impulses: Vec::new(),
-            bodies: Bodies::default(),
-            dynamic,
-            islands,
-            graph: ContactGraph::default(),
-            blocks: Vec::new(),
-            easy_blocks: 0,
-            spins: Vec::new(),
-            bounces,
+            members: emptied(self.members),
+            sources: self.sources,
+            ends: self.ends,
+            found: &[],
+            islands: self.islands,
+            environment: self.environment,
+            impulses: self.impulses,
+            next: self.next,
+            bodies: self.bodies,
+            dynamic: self.dynamic,
+            graph: self.graph,
+            loads: self.loads,
+            rows: self.rows,
+            arranger: self.arranger,
+            guard: self.guard,
+            spins: self.spins,
+            endings: self.endings,
+            bounces: false,
+            driven: self.driven,
         }
+    }
+
+    /// Where the members touch.
+    pub(crate) fn contacts(&self) -> ContactList<'_> {
+        ContactList { ends: &self.ends, found: self.found }
     }
 
     /// Has what contacts push with added up. The classic shock propagation's impulses, which act on velocities, are not among it.
     pub(crate) fn record_impulses(&mut self) {
-        self.impulses = vec![[0.0; 4]; self.contacts.len()];
+        fill(&mut self.impulses, self.ends.len(), [0.0; 4]);
     }
 
     fn substep_seconds(&self) -> f32 {
@@ -96,128 +148,148 @@ impl<'a> Batch<'a> {
 
     /// Stage 3: levels, load, rows.
     pub(crate) fn build_contact_graph(&mut self) {
-        let dynamic = &self.dynamic;
-        self.graph = ContactGraph::build(&self.members, &self.contacts);
-        let (loads, strains) = self.loads();
-        let hard = self.hard(&strains);
-        let is_hard = |k: &u32| hard[self.island_of(&self.contacts[*k as usize])];
-        let (hard, easy): (Vec<u32>, Vec<u32>) = (0..self.contacts.len() as u32).partition(is_hard);
-        self.blocks = arrange(&easy, dynamic, &self.graph, &self.contacts);
-        self.easy_blocks = self.blocks.len();
-        self.blocks.append(&mut arrange(&hard, dynamic, &self.graph, &self.contacts));
-        let levels: Vec<u32> = (0..self.members.len()).map(|i| self.graph.level(i)).collect();
-        let gravity = self.environment.gravity;
-        let source = Source {
-            members: &self.members,
-            contacts: &self.contacts,
-            loads: &loads,
-            levels: &levels,
-            up: if gravity == Vec3::ZERO { Vec3::ZERO } else { -gravity.normalize() },
-            shock_yield: self.environment.settings.shock_yield,
-        };
-        prepare(&mut self.blocks, &self.bodies, &source);
-    }
-
-    /// The root of the island that a contact belongs to.
-    fn island_of(&self, contact: &Contact) -> usize {
-        let (first, second) = (contact.first as usize, contact.second as usize);
-        self.islands.root(if self.dynamic[first] { first } else { second })
-    }
-
-    /// Per island root: whether the load pass fails to place its weight (heaps, arches, wedged bodies), so that it needs more sweeps.
-    fn hard(&self, strains: &[Strain]) -> Vec<bool> {
-        let mut sums = vec![(0.0f64, 0.0f64); strains.len()];
-        for (i, strain) in strains.iter().enumerate() {
-            let sum = &mut sums[self.islands.root(i)];
-            sum.0 += f64::from(strain.weight);
-            sum.1 += f64::from(strain.lost);
-        }
-        sums.into_iter().map(|(weight, lost)| lost > HARD_PART * weight).collect()
-    }
-
-    fn loads(&self) -> (Vec<Load>, Vec<Strain>) {
+        let contacts = ContactList { ends: &self.ends, found: self.found };
+        self.graph.build(&self.members, &contacts);
         LoadPass {
             members: &self.members,
-            contacts: &self.contacts,
+            contacts,
             graph: &self.graph,
             environment: &self.environment,
             substep_seconds: self.substep_seconds(),
         }
-        .run()
+        .run(&mut self.loads);
+        self.arrange();
+        let gravity = self.environment.gravity;
+        let contacts = ContactList { ends: &self.ends, found: self.found };
+        let source = Source { contacts, loads: &self.loads.of_contact, levels: self.graph.levels() };
+        let common = Common {
+            up: if gravity == Vec3::ZERO { Vec3::ZERO } else { -gravity.normalize() },
+            shock_yield: self.environment.settings.shock_yield,
+            substep_seconds: self.substep_seconds(),
+        };
+        let Rows { flat, uneven } = &mut self.rows;
+        prepare(&mut flat.blocks, &mut flat.details, &self.bodies, &source, &common);
+        prepare(&mut uneven.blocks, &mut uneven.details, &self.bodies, &source, &common);
+    }
+
+    /// Finds a lane for every contact: flat islands apart from uneven ones, easy ones before hard ones.
+    fn arrange(&mut self) {
+        let class = self.classes();
+        let mut chosen: [Vec<u32>; 4] = Default::default();
+        for (k, ends) in self.ends.iter().enumerate() {
+            chosen[class[self.island_of(ends)]].push(k as u32);
+        }
+        let order = Order { graph: &self.graph, contacts: &self.ends, yields: &self.dynamic };
+        let (arranger, Rows { flat, uneven }) = (&mut self.arranger, &mut self.rows);
+        let [flat_easy, flat_hard, uneven_easy, uneven_hard] = &chosen;
+        arranger.begin(self.members.len());
+        flat.clear();
+        arranger.add(flat_easy, &order, flat);
+        flat.easy = flat.count;
+        arranger.add(flat_hard, &order, flat);
+        flat.finish();
+        uneven.clear();
+        arranger.add(uneven_easy, &order, uneven);
+        uneven.easy = uneven.count;
+        arranger.add(uneven_hard, &order, uneven);
+        uneven.finish();
+    }
+
+    /// By island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps; 2 more where some
+    /// manifold has points that push different ways, which only those of meshes do.
+    fn classes(&self) -> Vec<usize> {
+        let mut sums = vec![(0.0f64, 0.0f64); self.islands.count() + 1];
+        for (i, strain) in self.loads.strain.iter().enumerate() {
+            let sum = &mut sums[self.islands.root(i)];
+            sum.0 += f64::from(strain.weight);
+            sum.1 += f64::from(strain.lost);
+        }
+        let hard = |(weight, lost)| lost > HARD_PART * weight;
+        let mut class: Vec<usize> = sums.into_iter().map(|sums| usize::from(hard(sums))).collect();
+        if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
+            for (k, ends) in self.ends.iter().enumerate() {
+                let manifold = self.contacts().manifold(k);
+                let points = &manifold.points[..manifold.count as usize];
+                if points.iter().any(|p| p.normal != points[0].normal) {
+                    class[self.island_of(ends)] |= 2;
+                }
+            }
+        }
+        class
+    }
+
+    /// The number of the island that a contact belongs to.
+    fn island_of(&self, ends: &Ends) -> usize {
+        // Bodies that do not yield have the highest number.
+        self.islands.root(ends.first as usize).min(self.islands.root(ends.second as usize))
     }
 
     /// Stage 4: substeps of bounces, gravity, warm start and sweeps.
     pub(crate) fn resolve_contacts(&mut self) {
-        let h = self.substep_seconds();
         let settings = self.environment.settings;
-        let driven = self.driven();
-        let guard = EnergyGuard { islands: &self.islands, dynamic: &self.dynamic, driven: &driven };
-        let mut kicks: Vec<Row> = self.bodies.accelerations.iter().map(|a| Row(a.0.map(|x| x * h))).collect();
-        kicks.push(Row::default());
-        let mut before = Vec::new();
-        let (blocks, bodies, impulses) = (&mut self.blocks, &mut self.bodies, &mut self.impulses);
-        let standing = StandingPass {
-            guard: &guard,
-            kicks: &kicks,
-            displacements: &bodies.displacements,
-            substep_seconds: h,
+        let h = self.substep_seconds();
+        let at = Guarding { islands: &self.islands, driven: &self.driven };
+        let (rows, bodies, impulses) = (&mut self.rows, &mut self.bodies, &mut self.impulses);
+        let mut standing = StandingPass {
+            guard: &mut self.guard,
+            at,
+            kicks: &bodies.kicks,
             sweeps: settings.first_sweeps_hard,
         };
-        standing.run(&mut blocks[self.easy_blocks..]);
+        let Rows { flat, uneven } = rows;
+        standing.run(&mut flat.blocks[flat.easy..], &mut flat.details[flat.easy..]);
+        standing.run(&mut uneven.blocks[uneven.easy..], &mut uneven.details[uneven.easy..]);
         for substep in 0..settings.substeps {
             if self.bounces {
-                resolve_collisions(blocks, &mut moving(bodies, &kicks, &settings, impulses));
-            }
-            for (velocity, kick) in bodies.velocities.iter_mut().zip(&kicks) {
-                for k in 0..6 {
-                    velocity.0[k] += kick.0[k];
-                }
+                rows.resolve_collisions(&mut moving(bodies, &settings, impulses));
             }
             if substep == 1 {
-                remove_momentum(blocks);
+                rows.remove_momentum(&mut bodies.pushes);
             }
-            before.clone_from(&bodies.velocities);
-            apply_impulses(blocks, &mut bodies.velocities);
+            fall(bodies);
+            if substep == 0 {
+                rows.apply_impulses(&mut bodies.velocities);
+            }
             let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
-            guard.check(blocks, &before, &mut bodies.velocities, guess);
+            keep_energy(&mut self.guard, at, rows, bodies, guess);
             for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
-                sweep(blocks, &mut bodies.velocities, &bodies.displacements, h);
+                rows.sweep(&mut bodies.velocities);
             }
-            guard.check(blocks, &before, &mut bodies.velocities, Guarded::Result);
-            displace(bodies, &before, &kicks, h);
-            relax(blocks, &mut moving(bodies, &kicks, &settings, &mut []), self.bounces);
-            add_substep(impulses, blocks);
+            keep_energy(&mut self.guard, at, rows, bodies, Guarded::Result);
+            displace(bodies, h);
+            rows.relax(&mut moving(bodies, &settings, &mut []), self.bounces);
+            note_pushes(bodies);
+            rows.add_impulses(impulses);
             if settings.shock_propagation == ShockPropagation::Classic {
-                propagate_classic(blocks, &mut bodies.velocities, &bodies.displacements, h);
+                rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
             }
         }
     }
 
-    /// Islands that a moving kinematic body touches.
-    fn driven(&self) -> Vec<bool> {
-        let mut driven = vec![false; self.members.len()];
+    /// Finds the islands that a moving kinematic body touches.
+    fn find_driven(&mut self) {
+        fill(&mut self.driven, self.members.len() + 1, false);
         let drives = |i: u32| self.members[i as usize].drives();
-        for c in &self.contacts {
-            if drives(c.first) {
-                driven[self.islands.root(c.second as usize)] = true;
-            }
-            if drives(c.second) {
-                driven[self.islands.root(c.first as usize)] = true;
+        if !self.members.iter().any(Member::drives) {
+            return;
+        }
+        for Ends { first, second, .. } in &self.ends {
+            for (driver, driven) in [(*first, *second), (*second, *first)] {
+                if drives(driver) {
+                    self.driven[self.islands.root(driven as usize)] = true;
+                }
             }
         }
-        driven
     }
 
     /// Stage 5: remaining overlap is pushed out, level by level.
     pub(crate) fn propagate_shock(&mut self) {
         let settings = self.environment.settings;
-        let push_max = settings.recovery_speed_max * settings.frame_seconds;
         for _ in 0..self.pushes() {
-            propagate_shock(&mut self.blocks, &mut self.bodies.displacements, &settings, push_max);
+            self.rows.propagate_shock(OnlyHard::No, &mut self.bodies.displacements, &settings);
         }
-        let hard = &mut self.blocks[self.easy_blocks..];
         for _ in 0..HARD_PUSHES {
-            propagate_shock(hard, &mut self.bodies.displacements, &settings, push_max);
+            self.rows.propagate_shock(OnlyHard::Yes, &mut self.bodies.displacements, &settings);
         }
     }
 
@@ -226,25 +298,29 @@ impl<'a> Batch<'a> {
         if self.members.iter().any(|m| m.body.is_dynamic() && is_mesh(&m.body.shape)) { 2 } else { 1 }
     }
 
-    /// Stage 6: new states, in the order of the members.
-    pub(crate) fn integrate_positions(&self) -> Vec<BodyState> {
-        let endings = endings(&self.members, &self.contacts, &self.spins, &self.environment.settings);
-        let mut next: Vec<BodyState> = (self.members.iter().enumerate())
-            .map(|(i, m)| moved(m, &self.bodies, i, &endings[i], &self.environment))
-            .collect();
-        let islands = IslandsAt { islands: &self.islands, driven: &self.driven(), contacts: &self.contacts };
-        settle(&self.members, &mut next, &endings, &islands, &self.environment);
-        next
+    /// Stage 6: new states.
+    pub(crate) fn integrate_positions(&mut self) {
+        let (members, environment) = (&self.members, &self.environment);
+        let at = Resting {
+            members,
+            contacts: ContactList { ends: &self.ends, found: self.found },
+            deepest: self.graph.deepest(),
+            islands: &self.islands,
+            driven: &self.driven,
+            environment,
+        };
+        at.find_endings(&self.spins, &mut self.endings);
+        let bodies = &self.bodies;
+        let moves = |(i, m): (usize, &Member)| moved(m, bodies, i, &self.endings[i], environment);
+        self.next.clear();
+        self.next.extend(members.iter().enumerate().map(moves));
+        at.settle(&mut self.next, &self.endings);
     }
 
     /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
     pub(crate) fn overlap_growth(&self) -> Vec<f32> {
-        let mut growth = vec![0.0; self.contacts.len()];
-        for block in &self.blocks {
-            for (contact, deeper) in block.overlap_growth(&self.bodies.displacements) {
-                growth[contact] = deeper;
-            }
-        }
+        let mut growth = vec![0.0; self.ends.len()];
+        self.rows.overlap_growth(&self.bodies.displacements, &mut growth);
         growth
     }
 }
@@ -255,30 +331,21 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
 }
 
 /// What the kernels that look ahead need of the bodies.
-fn moving<'a>(
-    bodies: &'a mut Bodies,
-    kicks: &'a [Row],
-    settings: &StepSettings,
-    bounced: &'a mut [[f32; 4]],
-) -> Moving<'a> {
+fn moving<'a>(bodies: &'a mut Bodies, settings: &StepSettings, bounced: &'a mut [[f32; 4]]) -> Moving<'a> {
     Moving {
         velocities: &mut bodies.velocities,
         displacements: &bodies.displacements,
-        kicks,
+        kicks: &bodies.kicks,
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
         bounced,
     }
 }
 
-/// Moves the bodies by their velocities for one substep. A body that no impulse reached flies its parabola; one that was pushed moves as the
-/// contacts were solved, with its new velocity.
-fn displace(bodies: &mut Bodies, before: &[Row], kicks: &[Row], h: f32) {
-    let rows = bodies.displacements.iter_mut().zip(&bodies.velocities).zip(before.iter().zip(kicks));
-    for ((displacement, velocity), (free, kick)) in rows {
-        let flies = if velocity == free { 0.5 } else { 0.0 };
-        for k in 0..6 {
-            displacement.0[k] += h * (velocity.0[k] - flies * kick.0[k]);
-        }
+/// Scales back what impulses have added, where it is energy.
+fn keep_energy(guard: &mut EnergyGuard, at: Guarding, rows: &mut Rows, bodies: &mut Bodies, what: Guarded) {
+    if guard.gains(at, &bodies.free, &bodies.velocities, what) {
+        guard.scale_back(at.islands, &bodies.free, &mut bodies.velocities);
+        rows.scale_impulses(guard, at.islands, what);
     }
 }

@@ -19,8 +19,14 @@ pub(crate) struct Bodies {
     pub(crate) velocities: Vec<Row>,
     /// Mass-scaled displacement since the start of the frame.
     pub(crate) displacements: Vec<Row>,
-    /// Mass-scaled acceleration by gravity, forces and torques.
-    pub(crate) accelerations: Vec<Row>,
+    /// Mass-scaled change of velocity by gravity, forces and torques in a substep.
+    pub(crate) kicks: Vec<Row>,
+    /// Velocities of the running substep before any impulse.
+    pub(crate) free: Vec<Row>,
+    /// What impulses did to the velocities in the last substep.
+    pub(crate) pushes: Vec<Row>,
+    /// Static and kinetic friction, restitution, half thickness, inverse mass.
+    pub(crate) surfaces: Vec<Row>,
 }
 
 /// Scale factors of one body.
@@ -70,12 +76,16 @@ impl Bodies {
     /// The rows of all members; velocities are filled in by the stage that integrates them.
     pub(crate) fn gather(members: &[Member], environment: &Environment) -> Bodies {
         let n = members.len();
+        let h = environment.settings.frame_seconds / environment.settings.substeps as f32;
         let mut bodies = Bodies {
-            centres: Vec::with_capacity(n + 1),
-            axes: Vec::with_capacity(n + 1),
+            centres: Vec::with_capacity(n + 2),
+            axes: Vec::with_capacity(n + 2),
             velocities: vec![Row::default(); n + 2],
             displacements: vec![Row::default(); n + 2],
-            accelerations: Vec::with_capacity(n),
+            kicks: Vec::with_capacity(n + 2),
+            free: vec![Row::default(); n + 2],
+            pushes: vec![Row::default(); n + 2],
+            surfaces: Vec::with_capacity(n + 2),
         };
         for member in members {
             let scale = Scale::of(member);
@@ -84,10 +94,25 @@ impl Bodies {
             bodies.centres.push(Row([p.x, p.y, p.z, s, i.x, i.y, i.z, answers]));
             let (a, b) = (m.x_axis, m.y_axis);
             bodies.axes.push(Row([a.x, a.y, a.z, b.x, b.y, b.z, 0.0, 0.0]));
-            bodies.accelerations.push(acceleration(member, scale, environment));
+            bodies.kicks.push(Row(acceleration(member, scale, environment).0.map(|x| x * h)));
+            let (b, m) = (member.body, member.body.material);
+            bodies.surfaces.push(Row([
+                m.static_friction,
+                m.friction,
+                m.restitution,
+                b.half_thickness,
+                b.inverse_mass,
+                0.0,
+                0.0,
+                0.0,
+            ]));
         }
-        bodies.centres.push(Row::default());
-        bodies.axes.push(Row([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]));
+        for _ in 0..2 {
+            bodies.centres.push(Row::default());
+            bodies.axes.push(Row([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]));
+            bodies.kicks.push(Row::default());
+            bodies.surfaces.push(Row::default());
+        }
         bodies
     }
 }

@@ -3,10 +3,12 @@
 //! A contact collides when it approaches and will close within the substep. A body at rest has no velocity before gravity, so that it
 //! does not bounce, whatever its restitution. What gravity adds in one frame counts as rest: a speed that shrinks with the frame, no threshold of its own.
 
-use super::blocks::Block;
+use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
 use super::impulses;
-use super::sweep::{Sides, friction};
-use crate::lanes::{LaneMask, Lanes, Row, dispatched};
+use super::points::{Kind, Point, Push};
+use super::sides::Sides;
+use super::sweep::{coupling, friction};
+use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast};
 
 /// A collision may cause the next one within the same substep (a row of balls), at most so many in a row.
 const COLLISION_ROUNDS: usize = 4;
@@ -28,16 +30,26 @@ pub(crate) struct Moving<'a> {
 
 dispatched! {
     /// Bounces every contact that collides in this substep.
-    pub(crate) fn resolve_collisions(blocks: &mut [Block], moving: &mut Moving) => resolve_lanes
+    pub(crate) fn resolve_collisions<K: Kind>(
+        blocks: &[Block<Portable, K>],
+        details: &[Detail<Portable>],
+        moving: &mut Moving,
+    ) => resolve_lanes
 }
 
 #[inline(always)]
-fn resolve_lanes<F: Lanes>(blocks: &mut [Block<F>], moving: &mut Moving) {
+fn resolve_lanes<F: Lanes, K: Kind>(
+    blocks: &[Block<Portable, K>],
+    details: &[Detail<Portable>],
+    moving: &mut Moving,
+) {
+    let blocks = recast::<F, BlocksOf<K>>(blocks);
+    let details = recast::<F, DetailsOf>(details);
     for _ in 0..COLLISION_ROUNDS {
         let mut any = false;
-        for block in blocks.iter_mut() {
-            if block.restitution.gt(F::zero()).any() {
-                any |= collide(block, moving);
+        for (block, detail) in blocks.iter().zip(details) {
+            if detail.restitution.gt(F::zero()).any() {
+                any |= collide(block, detail, moving);
             }
         }
         if !any {
@@ -48,82 +60,80 @@ fn resolve_lanes<F: Lanes>(blocks: &mut [Block<F>], moving: &mut Moving) {
 
 /// Returns whether any contact of the block collided.
 #[inline(always)]
-fn collide<F: Lanes>(block: &mut Block<F>, moving: &mut Moving) -> bool {
+fn collide<F: Lanes, K: Kind>(block: &Block<F, K>, detail: &Detail<F>, moving: &mut Moving) -> bool {
     let mut v = Sides::gather(block, moving.velocities);
-    let moved: Sides<F> = Sides::gather(block, moving.displacements);
-    let kick: Sides<F> = Sides::gather(block, moving.kicks);
+    let relative = v.relative(block);
+    let moved = Sides::gather(block, moving.displacements).relative(block);
+    let kick = Sides::gather(block, moving.kicks).relative(block);
     let h = F::splat(moving.substep_seconds);
-    let mut target = [F::zero(); 4];
+    let mut lacking = [F::zero(); 4];
     let mut hits = [F::zero(); 4];
-    let (mut all, mut target_sum, mut any) = (F::one(), F::zero(), F::zero());
+    let (mut all, mut any) = (F::one(), F::zero());
     for q in 0..4 {
         let point = &block.points[q];
-        let row = point.jacobian();
-        let separation = point.separation + moved.along(block, &row);
-        let speed = v.along(block, &row);
-        let kicked = kick.along(block, &row);
+        let separation = detail.separation[q] + point.speed(&moved);
+        let speed = point.speed(&relative);
+        let kicked = point.speed(&kick);
         let ahead = separation + h * (speed + kicked);
         // Slower is what gravity does in a frame to a body that rests on the other: contact, not collision. Two that fall alike have none of it.
         let fall = (-kicked).max(F::zero()) * F::splat(moving.substeps);
-        let is_point = point.inverse_k.gt(F::zero());
-        let hit = is_point & speed.lt(-fall) & ahead.lt(F::zero()) & block.restitution.gt(F::zero());
+        let is_point = block.is_point(q);
+        let hit = is_point & speed.lt(-fall) & ahead.lt(F::zero()) & detail.restitution.gt(F::zero());
         hits[q] = hit.select(F::one(), F::zero());
-        target[q] = -(block.restitution * speed);
         all = is_point.select(all.min(hits[q]), all);
         any = any.max(hits[q]);
-        target_sum += is_point.select(target[q], F::zero());
+        lacking[q] = is_point.select(-(detail.restitution * speed) - speed, F::zero());
     }
     if !any.gt(F::zero()).any() {
         return false;
     }
-    let targets = Targets { hits, speeds: target, sum: target_sum, all };
-    let impulses = bounce(block, &mut v, &targets);
+    let impulses = bounce(block, &hits, all, &mut lacking);
     if !moving.bounced.is_empty() {
-        impulses::add(moving.bounced, &block.source, &impulses);
+        impulses::add(moving.bounced, &detail.source, &impulses);
     }
-    let sum = impulses[0] + impulses[1] + impulses[2] + impulses[3];
     // Friction of the collision alone: the impulses of the contacts are kept apart.
-    let (tangents, twist) = (block.friction.impulses, block.friction.twist_impulse);
-    block.friction.impulses = [F::zero(); 2];
-    block.friction.twist_impulse = F::zero();
-    friction(block, &mut v, sum);
-    block.friction.impulses = tangents;
-    block.friction.twist_impulse = twist;
+    let mut push = Push::zero();
+    let mut slip = [relative.linear.x, relative.linear.y, relative.angular.z];
+    let mut sum = F::zero();
+    for q in 0..4 {
+        block.points[q].add(impulses[q], &mut push);
+        for k in 0..3 {
+            slip[k] += block.friction.drag[k][q] * impulses[q];
+        }
+        sum += impulses[q];
+    }
+    let rubbed = friction(&block.friction, &slip, sum, &[F::zero(); 3]);
+    push.rub([rubbed[0], rubbed[1]], rubbed[2]);
+    v.push(block, &push);
     v.scatter(block, moving.velocities);
     true
 }
 
-/// What the points of a contact are to bounce to.
-struct Targets<F> {
-    /// 1 for the points that collide.
-    hits: [F; 4],
-    speeds: [F; 4],
-    sum: F,
-    /// 1 where all points of the contact collide: a flat landing.
-    all: F,
-}
-
-/// Normal impulses towards the target speeds.
+/// Normal impulses of the points that collide (`hits` is 1), towards speeds that `lacking` is away from. `all` is 1 where every point of the contact
+/// collides: a flat landing.
 #[inline(always)]
-fn bounce<F: Lanes>(block: &Block<F>, v: &mut Sides<F>, targets: &Targets<F>) -> [F; 4] {
-    let Targets { hits, speeds: target, .. } = targets;
-    let row = block.centre_jacobian();
-    let centre = &block.centre;
-    let lacking = targets.sum * centre.inverse_count - v.along(block, &row);
-    let flat = targets.all.gt(F::splat(0.5)).select((centre.inverse_k * lacking).max(F::zero()), F::zero());
-    v.apply(block, &row, flat);
+fn bounce<F: Lanes, K: Kind>(block: &Block<F, K>, hits: &[F; 4], all: F, lacking: &mut [F; 4]) -> [F; 4] {
+    let sum = lacking[0] + lacking[1] + lacking[2] + lacking[3];
+    let flat = all.gt(F::splat(0.5)).select((block.mean_gain * sum).max(F::zero()), F::zero());
     let mut impulses = [F::zero(); 4];
     for q in 0..4 {
-        impulses[q] = hits[q] * flat * centre.inverse_count;
+        impulses[q] = hits[q] * flat;
+        lacking[q] = lacking[q] - block.row_sums[q] * flat;
     }
     for _ in 0..POINT_ROUNDS {
         for q in 0..4 {
-            let point = &block.points[q];
-            let row = point.jacobian();
-            let change = hits[q] * point.inverse_k * (target[q] - v.along(block, &row));
-            let impulse = (impulses[q] + change).max(F::zero());
-            v.apply(block, &row, impulse - impulses[q]);
+            let inverse_k = block.inverse_k[q];
+            let impulse = (impulses[q] + hits[q] * inverse_k * lacking[q]).max(F::zero());
+            let change = impulse - impulses[q];
             impulses[q] = impulse;
+            for p in 0..4 {
+                let k = if p == q {
+                    F::one() / block.is_point(q).select(inverse_k, F::one())
+                } else {
+                    block.coupling[coupling(p, q)]
+                };
+                lacking[p] = lacking[p] - k * change;
+            }
         }
     }
     impulses

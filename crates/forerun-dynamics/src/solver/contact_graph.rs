@@ -3,8 +3,9 @@
 //! Promise: levels rise from the bodies that do not yield, one a contact; bodies that touch nothing supported come last. Inside an island levels
 //! and order depend on the island alone, so that islands can be solved together or apart with the same bits.
 
+use super::batch::{ContactList, Ends};
 use crate::Member;
-use crate::narrow_phase::Contact;
+use crate::scratch::{add_up, fill};
 
 /// Contacts nearer than this carry load and levels. Metres; well above the allowed overlap, so that rest does not flip it.
 const TOUCH_M: f32 = 0.01;
@@ -26,61 +27,71 @@ pub(crate) struct Link {
 #[derive(Debug, Default)]
 pub(crate) struct ContactGraph {
     starts: Vec<u32>,
+    next: Vec<u32>,
     links: Vec<Link>,
     level: Vec<u32>,
-    /// Per contact: how near its points count as touching. Metres.
     touch: Vec<f32>,
+    deepest: Vec<f32>,
     /// Bodies by rising level; bodies that nothing supports are not in it.
     pub(crate) order: Vec<u32>,
 }
 
 impl ContactGraph {
-    /// The graph over the bodies of a batch; those that do not yield are the ground.
-    pub(crate) fn build(members: &[Member], contacts: &[Contact]) -> ContactGraph {
-        let mut graph = ContactGraph::adjacency(members, contacts);
-        graph.assign_levels(members.len(), |i| members[i].body.is_dynamic());
-        graph
+    /// Makes this the graph over the bodies of a batch; those that do not yield are the ground.
+    pub(crate) fn build(&mut self, members: &[Member], contacts: &ContactList) {
+        self.measure(members, contacts);
+        self.link(members.len(), contacts.ends);
+        self.assign_levels(members);
     }
 
-    fn adjacency(members: &[Member], contacts: &[Contact]) -> ContactGraph {
-        let count = members.len();
+    /// How near each contact is, and has to be to touch.
+    fn measure(&mut self, members: &[Member], contacts: &ContactList) {
         let half = |i: u32| members[i as usize].body.half_thickness;
-        let touch: Vec<f32> =
-            contacts.iter().map(|c| TOUCH_M.min(TOUCH_PART * half(c.first).min(half(c.second)))).collect();
-        let mut starts = vec![0u32; count + 1];
-        for c in contacts {
-            starts[c.first as usize + 1] += 1;
-            starts[c.second as usize + 1] += 1;
+        self.touch.clear();
+        self.touch.extend(
+            contacts.ends.iter().map(|e| TOUCH_M.min(TOUCH_PART * half(e.first).min(half(e.second)))),
+        );
+        self.deepest.clear();
+        self.deepest.extend((0..contacts.ends.len()).map(|k| contacts.manifold(k).deepest()));
+    }
+
+    fn link(&mut self, count: usize, ends: &[Ends]) {
+        fill(&mut self.starts, count + 1, 0);
+        for e in ends {
+            self.starts[e.first as usize + 1] += 1;
+            self.starts[e.second as usize + 1] += 1;
         }
-        for i in 0..count {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut links = vec![Link { body: 0, contact: 0, touches: false }; 2 * contacts.len()];
-        for (k, c) in contacts.iter().enumerate() {
-            let points = &c.manifold.points[..c.manifold.count as usize];
-            let touches = points.iter().any(|p| p.separation < touch[k]);
-            for (here, there) in [(c.first, c.second), (c.second, c.first)] {
-                links[next[here as usize] as usize] = Link { body: there, contact: k as u32, touches };
-                next[here as usize] += 1;
+        add_up(&mut self.starts);
+        self.next.clone_from(&self.starts);
+        fill(&mut self.links, 2 * ends.len(), Link { body: 0, contact: 0, touches: false });
+        for (k, e) in ends.iter().enumerate() {
+            let touches = self.deepest[k] < self.touch[k];
+            for (here, body) in [(e.first, e.second), (e.second, e.first)] {
+                let at = &mut self.next[here as usize];
+                self.links[*at as usize] = Link { body, contact: k as u32, touches };
+                *at += 1;
             }
         }
-        ContactGraph { starts, links, touch, level: Vec::new(), order: Vec::new() }
     }
 
     /// Breadth first from the ground over touching contacts: bodies of a cycle share a level or differ by one, whoever is first reached.
-    fn assign_levels(&mut self, count: usize, yields: impl Fn(usize) -> bool) {
+    fn assign_levels(&mut self, members: &[Member]) {
         const UNREACHED: u32 = u32::MAX;
-        let mut level = vec![UNREACHED; count];
-        let mut order: Vec<u32> = (0..count as u32).filter(|&i| !yields(i as usize)).collect();
-        for &i in &order {
-            level[i as usize] = 0;
+        let (level, order) = (&mut self.level, &mut self.order);
+        level.clear();
+        order.clear();
+        for (i, member) in members.iter().enumerate() {
+            let yields = member.body.is_dynamic();
+            level.push(if yields { UNREACHED } else { 0 });
+            if !yields {
+                order.push(i as u32);
+            }
         }
         let mut head = 0;
         while head < order.len() {
             let i = order[head] as usize;
             head += 1;
-            for link in self.links(i) {
+            for link in &self.links[self.starts[i] as usize..self.starts[i + 1] as usize] {
                 let j = link.body as usize;
                 if link.touches && level[j] == UNREACHED {
                     level[j] = level[i] + 1;
@@ -89,13 +100,11 @@ impl ContactGraph {
             }
         }
         let top = order.last().map_or(0, |&i| level[i as usize]);
-        for l in &mut level {
+        for l in level {
             if *l == UNREACHED {
                 *l = top + 1;
             }
         }
-        self.level = level;
-        self.order = order;
     }
 
     /// The contacts of a body, in canonical order.
@@ -108,13 +117,18 @@ impl ContactGraph {
         self.touch[contact]
     }
 
-    /// The level of a body: 0 for the ground.
-    pub(crate) fn level(&self, body: usize) -> u32 {
-        self.level[body]
+    /// By contact: the smallest separation of its points at the start of the frame. Metres.
+    pub(crate) fn deepest(&self) -> &[f32] {
+        &self.deepest
+    }
+
+    /// The level of each body: 0 for the ground.
+    pub(crate) fn levels(&self) -> &[u32] {
+        &self.level
     }
 
     /// The level of a contact: that of its upper body.
-    pub(crate) fn contact_level(&self, contact: &Contact) -> u32 {
+    pub(crate) fn contact_level(&self, contact: &Ends) -> u32 {
         self.level[contact.first as usize].max(self.level[contact.second as usize])
     }
 }

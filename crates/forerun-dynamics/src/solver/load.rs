@@ -6,10 +6,10 @@
 
 use forerun_geometry::Vec3;
 
-use super::contact_graph::{ContactGraph, Link};
-use super::prepare::combine;
+use super::batch::ContactList;
+use super::contact_graph::ContactGraph;
 use super::pressure::{Carried, Support, fit};
-use crate::narrow_phase::Contact;
+use crate::scratch::fill;
 use crate::{Environment, Member};
 
 /// Sinking slower than this is noise, not momentum. m/s
@@ -49,6 +49,21 @@ impl Compass {
         let one = (across - up * across.dot(up)).normalize();
         Some(Compass { up, one, two: one.cross(up) })
     }
+
+    /// Where a force acts on a body: its horizontal place relative to the centre, at the height of the centre. `arm` is that of its point; the force
+    /// is vertical where it is given as zero.
+    fn place(&self, arm: Vec3, force: Vec3) -> (f32, f32) {
+        let (mut x, mut z) = (arm.dot(self.one), arm.dot(self.two));
+        if force != Vec3::ZERO {
+            let rise = force.dot(self.up);
+            if rise.abs() > RISE_MIN {
+                let t = arm.dot(self.up) / rise;
+                x -= t * force.dot(self.one);
+                z -= t * force.dot(self.two);
+            }
+        }
+        (x, z)
+    }
 }
 
 /// How well the guess holds a body, in mass-scaled squares: of the weight's impulse, and of the part that no support takes.
@@ -58,53 +73,82 @@ pub(crate) struct Strain {
     pub(crate) lost: f32,
 }
 
+/// What the load pass finds, and the memory that it works in.
+#[derive(Debug, Default)]
+pub(crate) struct Loads {
+    /// By contact.
+    pub(crate) of_contact: Vec<Load>,
+    /// By body.
+    pub(crate) strain: Vec<Strain>,
+    /// By body: its load, with momentum and without.
+    carried: Vec<Both>,
+    /// By body: how fast it may sink. m/s
+    allowed: Vec<f32>,
+    /// The points below each body, in the order of the graph.
+    supports: Vec<Support>,
+    starts: Vec<u32>,
+}
+
+/// A body's load.
+#[derive(Clone, Copy, Debug, Default)]
+struct Both {
+    total: Carried,
+    still: Carried,
+}
+
 pub(crate) struct LoadPass<'a> {
     pub(crate) members: &'a [Member<'a>],
-    pub(crate) contacts: &'a [Contact],
+    pub(crate) contacts: ContactList<'a>,
     pub(crate) graph: &'a ContactGraph,
     pub(crate) environment: &'a Environment,
     pub(crate) substep_seconds: f32,
 }
 
 impl LoadPass<'_> {
-    /// The load of every contact, and the strain of every body.
-    pub(crate) fn run(&self) -> (Vec<Load>, Vec<Strain>) {
-        let mut loads: Vec<Load> =
-            self.contacts.iter().map(|c| Load { slide: self.slide(c), ..Load::default() }).collect();
-        let mut strains = vec![Strain::default(); self.members.len()];
+    /// Finds the load of every contact, and the strain of every body.
+    pub(crate) fn run(&self, loads: &mut Loads) {
+        fill(&mut loads.of_contact, self.contacts.ends.len(), Load::default());
+        fill(&mut loads.strain, self.members.len(), Strain::default());
+        self.find_slides(&mut loads.of_contact);
         let Some(compass) = Compass::new(self.environment.gravity) else {
-            return (loads, strains);
+            return;
         };
-        let mut total = vec![Carried::default(); self.members.len()];
-        let mut still = vec![Carried::default(); self.members.len()];
-        self.weigh(&compass, &mut total, &mut still);
-        let mut supports = Vec::with_capacity(32);
-        for &i in self.graph.order.iter().rev() {
+        fill(&mut loads.carried, self.members.len(), Both::default());
+        fill(&mut loads.allowed, self.members.len(), 0.0);
+        loads.supports.clear();
+        loads.starts.clear();
+        for &i in &self.graph.order {
+            loads.starts.push(loads.supports.len() as u32);
+            self.weigh(i as usize, &compass, loads);
+        }
+        let mut end = loads.supports.len();
+        for (&i, &start) in self.graph.order.iter().zip(&loads.starts).rev() {
+            let supports = &mut loads.supports[start as usize..end];
+            end = start as usize;
             let i = i as usize;
-            if !self.members[i].body.is_dynamic() {
+            let body = self.members[i].body;
+            if !body.is_dynamic() {
                 continue;
             }
-            self.supports_of(i, &compass, &loads, &mut supports);
-            let own = 1.0 / self.members[i].body.inverse_mass;
-            let weight = own * self.fall(i, &compass) * self.fall(i, &compass);
-            strains[i].weight = weight;
+            let fall = self.fall(i, &compass);
+            let weight = 1.0 / body.inverse_mass * fall * fall;
+            loads.strain[i].weight = weight;
             if supports.is_empty() {
-                strains[i].lost = weight;
+                loads.strain[i].lost = weight;
                 continue;
             }
-            let radius = self.members[i].body.radius;
-            fit(&mut supports, &total[i], &still[i], (1e-6 * radius * radius).max(1e-12));
-            strains[i].lost = self.lost(i, &supports, &still[i]);
-            for s in supports.iter().filter(|s| !s.dropped) {
-                let (c, p, j) = (s.contact as usize, s.point as usize, s.below as usize);
-                loads[c].total[p] = s.total * s.rise;
-                loads[c].weight[p] = s.still * s.rise;
-                let (x, z) = self.place(&self.contacts[c], (p, j), &compass, loads[c].slide);
-                total[j].add(s.total, x, z);
-                still[j].add(s.still, x, z);
+            let Both { total, still } = loads.carried[i];
+            fit(supports, &total, &still, (1e-6 * body.radius * body.radius).max(1e-12));
+            loads.strain[i].lost = self.lost(i, supports, &still);
+            for s in supports.iter().filter(|s| !s.dropped()) {
+                let load = &mut loads.of_contact[s.contact as usize];
+                load.total[s.point as usize] = s.total * s.rise;
+                load.weight[s.point as usize] = s.still * s.rise;
+                let below = &mut loads.carried[s.below as usize];
+                below.total.add(s.total, s.below_x, s.below_z);
+                below.still.add(s.still, s.below_x, s.below_z);
             }
         }
-        (loads, strains)
     }
 
     /// What gravity adds to the speed of a body in a substep. m/s
@@ -117,157 +161,123 @@ impl LoadPass<'_> {
     fn lost(&self, i: usize, supports: &[Support], still: &Carried) -> f32 {
         let body = self.members[i].body;
         let (mut moment_1, mut moment_2, mut slips) = (still.moment_1, still.moment_2, 0.0);
-        for s in supports.iter().filter(|s| !s.dropped) {
+        for s in supports.iter().filter(|s| !s.dropped()) {
             moment_1 -= s.still * s.x;
             moment_2 -= s.still * s.z;
-            let below = self.members[s.below as usize].body.material.friction;
-            let friction = (body.material.friction * below).sqrt();
-            let steep = (1.0 - s.rise * s.rise).max(0.0).sqrt();
-            let slip = s.still * (steep - friction * s.rise).max(0.0);
-            slips += slip * slip;
+            let steep = 1.0 - s.rise * s.rise;
+            if steep > 0.0 {
+                let friction = self.friction(i, s.below as usize);
+                let slip = s.still * (steep.sqrt() - friction * s.rise).max(0.0);
+                slips += slip * slip;
+            }
         }
         // Turning costs as for a ball of the same radius: I = 0.4 m r².
         let turns = (moment_1 * moment_1 + moment_2 * moment_2) / (0.4 * body.radius * body.radius);
         (turns + slips) * body.inverse_mass
     }
 
-    /// Own weight of each body, and the momentum that its supports must take from it.
-    fn weigh(&self, compass: &Compass, total: &mut [Carried], still: &mut [Carried]) {
-        let h = self.substep_seconds;
-        let mut allowed = vec![0.0f32; self.members.len()];
-        for &i in &self.graph.order {
-            let i = i as usize;
-            let member = &self.members[i];
-            let (body, state) = (member.body, &member.state);
-            let sinking = -state.velocity.dot(compass.up);
-            if !body.is_dynamic() {
-                allowed[i] = sinking;
-                continue;
-            }
-            let fall = self.fall(i, compass);
-            let mass = 1.0 / body.inverse_mass;
-            still[i].sum = mass * fall;
-            total[i].sum = mass * fall;
-            let mut lowest: Option<f32> = None;
-            for (link, point) in self.points_below(i, compass) {
-                let separation = self.contacts[link.contact as usize].manifold.points[point].separation;
-                let here = allowed[link.body as usize]
-                    + separation.max(0.0) / h
-                    + self.descent(i, link, point, compass);
-                lowest = Some(lowest.map_or(here, |l| l.min(here)));
-            }
-            let Some(lowest) = lowest else {
-                allowed[i] = UNSUPPORTED;
-                continue;
-            };
-            allowed[i] = lowest;
-            total[i].sum = mass * (fall + shrink(sinking - lowest)).max(0.0);
+    /// Kinetic friction between two bodies.
+    fn friction(&self, a: usize, b: usize) -> f32 {
+        (self.members[a].body.material.friction * self.members[b].body.material.friction).sqrt()
+    }
+
+    /// Own weight of a body, the momentum that its supports must take from it, and the supports: those below are weighed.
+    fn weigh(&self, i: usize, compass: &Compass, loads: &mut Loads) {
+        let member = &self.members[i];
+        let (body, state) = (member.body, &member.state);
+        let sinking = -state.velocity.dot(compass.up);
+        if !body.is_dynamic() {
+            loads.allowed[i] = sinking;
+            return;
+        }
+        let fall = self.fall(i, compass);
+        let mass = 1.0 / body.inverse_mass;
+        let mut carried = Both::default();
+        carried.still.sum = mass * fall;
+        carried.total.sum = mass * fall;
+        if let Some(lowest) = self.find_supports(i, compass, loads) {
+            loads.allowed[i] = lowest;
+            carried.total.sum = mass * (fall + shrink(sinking - lowest)).max(0.0);
             let spin = state.angular_velocity.length() * body.radius;
             if spin > DEAD_SPEED {
                 // A vertical force f at (x, z) turns by (-z f, 0, x f): the supports must take -L.
                 let axes = state.pose().axes();
                 let l = axes * ((axes.transpose() * state.angular_velocity) / body.inverse_inertia);
                 let part = 1.0 - DEAD_SPEED / spin;
-                total[i].moment_1 -= l.dot(compass.two) * part;
-                total[i].moment_2 += l.dot(compass.one) * part;
+                carried.total.moment_1 -= l.dot(compass.two) * part;
+                carried.total.moment_2 += l.dot(compass.one) * part;
+            }
+        } else {
+            loads.allowed[i] = UNSUPPORTED;
+        }
+        loads.carried[i] = carried;
+    }
+
+    /// Lists the points on which a body may rest: of contacts with lower bodies, near enough, rising. Returns how fast they let it sink, if there
+    /// are any. m/s
+    fn find_supports(&self, i: usize, compass: &Compass, loads: &mut Loads) -> Option<f32> {
+        let (levels, here) = (self.graph.levels(), &self.members[i].state);
+        let mut lowest: Option<f32> = None;
+        for link in self.graph.links(i) {
+            let (k, below) = (link.contact as usize, link.body as usize);
+            if !link.touches || levels[below] >= levels[i] {
+                continue;
+            }
+            let upwards = if self.contacts.ends[k].second as usize == i { 1.0 } else { -1.0 };
+            let (touch, slide) = (self.graph.touch(k), loads.of_contact[k].slide);
+            let there = &self.members[below].state;
+            let velocity = here.velocity - there.velocity;
+            let allowed = loads.allowed[below];
+            for (q, point) in self.contacts.manifold(k).points().iter().enumerate() {
+                let rise = point.normal.dot(compass.up) * upwards;
+                if point.separation >= touch || rise < RISE_MIN {
+                    continue;
+                }
+                // How fast the body sinks by moving along the surface that the point lies on.
+                let along = velocity - point.normal * velocity.dot(point.normal);
+                let descent = -along.dot(compass.up);
+                let sinks = allowed + point.separation.max(0.0) / self.substep_seconds + descent;
+                lowest = Some(lowest.map_or(sinks, |least| least.min(sinks)));
+                let force =
+                    if slide == Vec3::ZERO { slide } else { point.normal + slide * self.friction(i, below) };
+                let (x, z) = compass.place(point.position - here.position, force);
+                let (below_x, below_z) = compass.place(point.position - there.position, force);
+                loads.supports.push(Support {
+                    x,
+                    z,
+                    below_x,
+                    below_z,
+                    contact: link.contact,
+                    point: q as u32,
+                    below: link.body,
+                    rise,
+                    weight: ((touch - point.separation) / touch).clamp(1e-4, 1.0),
+                    total: 0.0,
+                    still: 0.0,
+                });
             }
         }
-    }
-
-    /// How fast a body sinks by moving along the surface that a point below it lies on. m/s
-    fn descent(&self, i: usize, link: &Link, point: usize, compass: &Compass) -> f32 {
-        let normal = self.contacts[link.contact as usize].manifold.points[point].normal;
-        let velocity = self.members[i].state.velocity - self.members[link.body as usize].state.velocity;
-        let along = velocity - normal * velocity.dot(normal);
-        -along.dot(compass.up)
-    }
-
-    /// The points on which a body may rest: of contacts with lower bodies, near enough, rising.
-    fn points_below<'b>(
-        &'b self,
-        i: usize,
-        compass: &'b Compass,
-    ) -> impl Iterator<Item = (&'b Link, usize)> + 'b {
-        let level = self.graph.level(i);
-        self.graph.links(i).iter().filter(move |link| self.graph.level(link.body as usize) < level).flat_map(
-            move |link| {
-                let contact = &self.contacts[link.contact as usize];
-                (0..contact.manifold.count as usize)
-                    .filter(move |&p| {
-                        contact.manifold.points[p].separation < self.graph.touch(link.contact as usize)
-                    })
-                    .filter(move |&p| self.rise(contact, p, i, compass) >= RISE_MIN)
-                    .map(move |p| (link, p))
-            },
-        )
-    }
-
-    fn rise(&self, contact: &Contact, point: usize, upper: usize, compass: &Compass) -> f32 {
-        let rise = contact.manifold.points[point].normal.dot(compass.up);
-        if contact.second as usize == upper { rise } else { -rise }
+        lowest
     }
 
     /// Which way friction pushes the second body of a contact, where a body slides on one that does not yield faster than friction can stop within
     /// the frame. (Two bodies that a jolt sets sliding on each other soon stick again: guessed as slides they make piles with heavy tops collapse.)
-    fn slide(&self, contact: &Contact) -> Vec3 {
-        let m = &contact.manifold;
-        let (a, b) = (&self.members[contact.first as usize], &self.members[contact.second as usize]);
-        if a.body.is_dynamic() && b.body.is_dynamic() {
-            return Vec3::ZERO;
-        }
-        let points = &m.points[..m.count as usize];
-        let centre = points.iter().fold(Vec3::ZERO, |sum, p| sum + p.position) / m.count as f32;
-        let velocity = b.state.velocity_at(centre) - a.state.velocity_at(centre);
-        let along = velocity - m.normal * velocity.dot(m.normal);
-        let speed = along.length();
-        let friction = combine(&a.body.material, &b.body.material).friction;
-        let stopped = friction * self.environment.gravity.length() * self.environment.settings.frame_seconds;
-        if speed > stopped { along / -speed } else { Vec3::ZERO }
-    }
-
-    /// Where a contact point's force acts on a body: its horizontal place relative to the centre, at the height of the centre.
-    fn place(
-        &self,
-        contact: &Contact,
-        (point, body): (usize, usize),
-        compass: &Compass,
-        slide: Vec3,
-    ) -> (f32, f32) {
-        let p = &contact.manifold.points[point];
-        let r = p.position - self.members[body].state.position;
-        let (mut x, mut z) = (r.dot(compass.one), r.dot(compass.two));
-        if slide != Vec3::ZERO {
-            let (a, b) = (&self.members[contact.first as usize], &self.members[contact.second as usize]);
-            let force = p.normal + slide * combine(&a.body.material, &b.body.material).friction;
-            let rise = force.dot(compass.up);
-            if rise.abs() > RISE_MIN {
-                let t = r.dot(compass.up) / rise;
-                x -= t * force.dot(compass.one);
-                z -= t * force.dot(compass.two);
+    fn find_slides(&self, loads: &mut [Load]) {
+        let change = self.environment.gravity.length() * self.environment.settings.frame_seconds;
+        let yields = |i: u32| self.members[i as usize].body.is_dynamic();
+        for (k, (e, load)) in self.contacts.ends.iter().zip(loads).enumerate() {
+            if yields(e.first) && yields(e.second) {
+                continue;
             }
-        }
-        (x, z)
-    }
-
-    fn supports_of(&self, i: usize, compass: &Compass, loads: &[Load], out: &mut Vec<Support>) {
-        out.clear();
-        for (link, p) in self.points_below(i, compass) {
-            let contact = &self.contacts[link.contact as usize];
-            let point = &contact.manifold.points[p];
-            let touch = self.graph.touch(link.contact as usize);
-            let (x, z) = self.place(contact, (p, i), compass, loads[link.contact as usize].slide);
-            out.push(Support {
-                x,
-                z,
-                contact: link.contact,
-                point: p as u32,
-                below: link.body,
-                rise: self.rise(contact, p, i, compass),
-                weight: ((touch - point.separation) / touch).clamp(1e-4, 1.0),
-                dropped: false,
-                total: 0.0,
-                still: 0.0,
-            });
+            let (a, b) = (&self.members[e.first as usize], &self.members[e.second as usize]);
+            let m = self.contacts.manifold(k);
+            let centre = m.points().iter().fold(Vec3::ZERO, |sum, p| sum + p.position) / m.count as f32;
+            let velocity = b.state.velocity_at(centre) - a.state.velocity_at(centre);
+            let along = velocity - m.normal * velocity.dot(m.normal);
+            let speed = along.length();
+            if speed > self.friction(e.first as usize, e.second as usize) * change {
+                load.slide = along / -speed;
+            }
         }
     }
 }

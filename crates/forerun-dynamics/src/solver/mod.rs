@@ -4,33 +4,40 @@
     reason = "kernels walk several short arrays side by side; the index is the point"
 )]
 
+mod arrange;
 mod blocks;
 mod bodies;
 mod collisions;
 mod contact_graph;
+mod energy_guard;
 mod flight;
 mod impulses;
 mod islands;
 mod load;
+mod manifolds;
 mod overlap;
+mod points;
 mod positions;
 mod prepare;
 mod pressure;
 mod rest;
 mod rotation;
+mod rows;
 mod shock;
+mod sides;
 mod spring;
 mod standing;
+mod substep;
 mod sweep;
+mod team;
 mod velocities;
 mod warm_start;
 
 mod batch;
 
-pub(crate) use batch::{Batch, is_mesh};
-pub(crate) use blocks::Block;
+pub(crate) use batch::{Batch, Ends, is_mesh};
 pub(crate) use flight::fly;
-pub(crate) use islands::Islands;
+pub(crate) use islands::Roots;
 pub(crate) use rest::rest_after_slices;
 pub(crate) use rotation::times_inverse_inertia;
 pub(crate) use spring::pull;

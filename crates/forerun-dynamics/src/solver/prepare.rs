@@ -2,12 +2,12 @@
 
 use forerun_geometry::Vec3;
 
-use super::blocks::{Block, CentreRow, FrictionRows, NO_CONTACT, PointRow};
+use super::blocks::{Block, BlocksOf, Detail, DetailsOf, Impulses};
 use super::bodies::Bodies;
-use super::load::Load;
-use crate::lanes::{LANES, LaneMask, Lanes, V8, dispatched};
-use crate::narrow_phase::Contact;
-use crate::{Material, Member};
+use super::manifolds::{Manifolds, Source};
+use super::points::{Kind, Point, Push, Side};
+use super::sweep::coupling;
+use crate::lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched, recast_mut};
 
 const TINY: f32 = 1e-12;
 /// Points this much higher than the lowest have no part in the friction. Metres.
@@ -18,141 +18,105 @@ const PATCH_PART: f32 = 0.01;
 /// Below this rise a contact has no vertical share to speak of.
 const RISE_MIN: f32 = 0.2;
 
-/// What the rows are made from.
+/// What all blocks have in common.
 #[derive(Clone, Copy)]
-pub(crate) struct Source<'a> {
-    pub(crate) members: &'a [Member<'a>],
-    pub(crate) contacts: &'a [Contact],
-    pub(crate) loads: &'a [Load],
-    pub(crate) levels: &'a [u32],
+pub(crate) struct Common {
     pub(crate) up: Vec3,
     pub(crate) shock_yield: f32,
-}
-
-/// Eight contacts as plain arrays.
-struct Arrays {
-    normal: [[f32; LANES]; 3],
-    positions: [[[f32; LANES]; 3]; 4],
-    normals: [[[f32; LANES]; 3]; 4],
-    separation: [[f32; LANES]; 4],
-    valid: [[f32; LANES]; 4],
-    total: [[f32; LANES]; 4],
-    weight: [[f32; LANES]; 4],
-    yields: [[f32; LANES]; 2],
-    friction: [[f32; LANES]; 2],
-    patch: [f32; LANES],
-    restitution: [f32; LANES],
-    slide: [[f32; LANES]; 3],
+    pub(crate) substep_seconds: f32,
 }
 
 dispatched! {
     /// Fills the rows of blocks whose indices are set.
-    pub(crate) fn prepare(blocks: &mut [Block], bodies: &Bodies, source: &Source) => prepare_lanes
+    pub(crate) fn prepare<K: Kind>(
+        blocks: &mut [Block<Portable, K>],
+        details: &mut [Detail<Portable>],
+        bodies: &Bodies,
+        source: &Source,
+        common: &Common,
+    ) => prepare_lanes
 }
 
 #[inline(always)]
-fn prepare_lanes<F: Lanes>(blocks: &mut [Block<F>], bodies: &Bodies, source: &Source) {
-    for block in blocks {
-        let lanes = load_lanes(block, source);
-        fill(block, &lanes, bodies, source.up);
+fn prepare_lanes<F: Lanes, K: Kind>(
+    blocks: &mut [Block<Portable, K>],
+    details: &mut [Detail<Portable>],
+    bodies: &Bodies,
+    source: &Source,
+    common: &Common,
+) {
+    let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
+    for (block, detail) in blocks.iter_mut().zip(recast_mut::<F, DetailsOf>(details)) {
+        let manifolds = Manifolds::gather::<K>(detail, source);
+        let ends = Ends {
+            first: End::gather(bodies, &block.first_row),
+            second: End::gather(bodies, &block.second_row),
+        };
+        let surface = ends.surface();
+        detail.first_answers = ends.first.answers;
+        detail.second_answers = ends.second.answers;
+        detail.restitution = surface.restitution;
+        detail.separation = manifolds.separation;
+        ends.share_yield(detail, &manifolds, F::splat(common.shock_yield));
+        let middle = Middle::of(&manifolds);
+        fill_places(block, &manifolds, &ends, &middle);
+        let pairs = Pairs::of(block, &ends);
+        fill_points(block, detail, &manifolds, &pairs, F::splat(1.0 / common.substep_seconds));
+        fill_friction(block, &pairs);
+        block.friction.static_coefficient = surface.static_friction;
+        block.friction.kinetic_coefficient = surface.friction;
+        block.friction.radius = middle.radius.max(surface.patch);
+        guess(block, detail, &manifolds, &middle, common.up);
     }
 }
 
-#[inline(always)]
-fn load_lanes<F>(block: &Block<F>, source: &Source) -> Arrays {
-    let z = [0.0; LANES];
-    let mut lanes = Arrays {
-        normal: [z, [1.0; LANES], z],
-        positions: [[z; 3]; 4],
-        normals: [[z, [1.0; LANES], z]; 4],
-        separation: [[1e6; LANES]; 4],
-        valid: [z; 4],
-        total: [z; 4],
-        weight: [z; 4],
-        yields: [[1.0; LANES]; 2],
-        friction: [z; 2],
-        patch: z,
-        restitution: z,
-        slide: [z; 3],
-    };
-    for lane in 0..LANES {
-        let k = block.source[lane];
-        if k == NO_CONTACT {
-            continue;
-        }
-        let contact = &source.contacts[k as usize];
-        let m = &contact.manifold;
-        for (axis, value) in m.normal.to_array().into_iter().enumerate() {
-            lanes.normal[axis][lane] = value;
-        }
-        for p in 0..m.count as usize {
-            let point = &m.points[p];
-            for axis in 0..3 {
-                lanes.positions[p][axis][lane] = point.position[axis];
-                lanes.normals[p][axis][lane] = point.normal[axis];
-            }
-            lanes.separation[p][lane] = point.separation;
-            lanes.valid[p][lane] = 1.0;
-            lanes.total[p][lane] = source.loads[k as usize].total[p];
-            lanes.weight[p][lane] = source.loads[k as usize].weight[p];
-        }
-        for (axis, value) in source.loads[k as usize].slide.to_array().into_iter().enumerate() {
-            lanes.slide[axis][lane] = value;
-        }
-        let (first, second) = (contact.first as usize, contact.second as usize);
-        let material = combine(&source.members[first].body.material, &source.members[second].body.material);
-        lanes.friction[0][lane] = material.static_friction;
-        lanes.friction[1][lane] = material.friction;
-        let thickness = |i: usize| source.members[i].body.half_thickness;
-        lanes.patch[lane] = PATCH_PART * thickness(first).min(thickness(second));
-        lanes.restitution[lane] = material.restitution;
-        // What lies below moves less than its mass says, and never more than what lies above.
-        let (low, high) = (source.levels[first], source.levels[second]);
-        let inverse = [source.members[first].body.inverse_mass, source.members[second].body.inverse_mass];
-        if low < high {
-            lanes.yields[0][lane] = source.shock_yield * lighter_share(inverse[1], inverse[0]);
-        } else if high < low {
-            lanes.yields[1][lane] = source.shock_yield * lighter_share(inverse[0], inverse[1]);
-        }
-    }
-    lanes
-}
 
-/// 1, or less where the lower body is the lighter one: the ratio of the inverse masses.
-fn lighter_share(above: f32, below: f32) -> f32 {
-    if above < below { above / below } else { 1.0 }
-}
-
-/// Friction is the geometric mean, restitution the larger of the two.
-pub(crate) fn combine(a: &Material, b: &Material) -> Material {
-    Material {
-        friction: (a.friction * b.friction).sqrt(),
-        static_friction: (a.static_friction * b.static_friction).sqrt(),
-        restitution: if a.restitution > b.restitution { a.restitution } else { b.restitution },
-    }
-}
-
-/// Reads a side's body: the arm of a point becomes a mass-scaled angular Jacobian.
-struct Side<F> {
+/// One body of each contact.
+struct End<F> {
     position: V8<F>,
     axes: [V8<F>; 3],
     inertia: V8<F>,
     scale: F,
     answers: F,
+    static_friction: F,
+    friction: F,
+    restitution: F,
+    half_thickness: F,
+    inverse_mass: F,
 }
 
-impl<F: Lanes> Side<F> {
+struct Ends<F> {
+    first: End<F>,
+    second: End<F>,
+}
+
+/// What two materials make together.
+struct Surface<F> {
+    static_friction: F,
+    friction: F,
+    restitution: F,
+    patch: F,
+}
+
+impl<F: Lanes> End<F> {
     #[inline(always)]
     fn gather(bodies: &Bodies, index: &[u32; LANES]) -> Self {
-        let c = F::gather(&bodies.centres, index);
-        let a = F::gather(&bodies.axes, index);
-        let (u, v) = (V8 { x: a[0], y: a[1], z: a[2] }, V8 { x: a[3], y: a[4], z: a[5] });
-        Side {
-            position: V8 { x: c[0], y: c[1], z: c[2] },
+        let [x, y, z, scale, ix, iy, iz, answers] = F::gather(&bodies.centres, index);
+        let [ux, uy, uz, vx, vy, vz, ..] = F::gather(&bodies.axes, index);
+        let [static_friction, friction, restitution, half_thickness, inverse_mass, ..] =
+            F::gather(&bodies.surfaces, index);
+        let (u, v) = (V8 { x: ux, y: uy, z: uz }, V8 { x: vx, y: vy, z: vz });
+        End {
+            position: V8 { x, y, z },
             axes: [u, v, u.cross(v)],
-            scale: c[3],
-            inertia: V8 { x: c[4], y: c[5], z: c[6] },
-            answers: c[7],
+            inertia: V8 { x: ix, y: iy, z: iz },
+            scale,
+            answers,
+            static_friction,
+            friction,
+            restitution,
+            half_thickness,
+            inverse_mass,
         }
     }
 
@@ -163,190 +127,261 @@ impl<F: Lanes> Side<F> {
     }
 
     #[inline(always)]
-    fn arm(&self, point: V8<F>, direction: V8<F>) -> V8<F> {
-        self.scaled((point - self.position).cross(direction))
-    }
-
-    /// The part of J Jᵀ that this side answers for.
-    #[inline(always)]
-    fn k(&self, direction2: F, arm: V8<F>) -> F {
-        self.answers * (self.scale * self.scale * direction2 + arm.dot(arm))
-    }
-}
-
-#[inline(always)]
-fn fill<F: Lanes>(block: &mut Block<F>, lanes: &Arrays, bodies: &Bodies, up: Vec3) {
-    let (a, b) = (Side::<F>::gather(bodies, &block.first), Side::<F>::gather(bodies, &block.second));
-    block.first_scale = a.scale;
-    block.second_scale = b.scale;
-    block.first_answers = a.answers;
-    block.second_answers = b.answers;
-    block.first_yields = F::from_array(lanes.yields[0]);
-    block.second_yields = F::from_array(lanes.yields[1]);
-    block.restitution = F::from_array(lanes.restitution);
-
-    let mut count = F::zero();
-    let (mut mean, mut mean_normal, mut mean_a, mut mean_b) =
-        (V8::zero(), V8::zero(), V8::zero(), V8::zero());
-    let mut positions = [V8::zero(); 4];
-    for q in 0..4 {
-        positions[q] = V8::from_arrays(lanes.positions[q]);
-    }
-    for q in 0..4 {
-        let valid = F::from_array(lanes.valid[q]);
-        let normal = V8::from_arrays(lanes.normals[q]);
-        let (first, second) = (a.arm(positions[q], normal), b.arm(positions[q], normal));
-        let k = a.k(F::one(), first) + b.k(F::one(), second) + F::splat(TINY);
-        block.points[q] = PointRow {
-            normal,
-            first,
-            second,
-            inverse_k: valid / k,
-            separation: F::from_array(lanes.separation[q]),
-            impulse: F::from_array(lanes.total[q]),
-        };
-        count += valid;
-        mean = mean + positions[q] * valid;
-        mean_normal = mean_normal + normal * valid;
-        mean_a = mean_a + first * valid;
-        mean_b = mean_b + second * valid;
-    }
-    let inverse_count = F::one() / count.max(F::one());
-    let (normal, first, second) =
-        (mean_normal * inverse_count, mean_a * inverse_count, mean_b * inverse_count);
-    let length2 = normal.dot(normal);
-    let k = a.k(length2, first) + b.k(length2, second) + F::splat(TINY);
-    block.centre = CentreRow { normal, first, second, inverse_k: F::one() / k, inverse_count };
-    let near = nearness(lanes);
-    let (mut centre, mut total) = (V8::zero(), F::splat(TINY));
-    for q in 0..4 {
-        let weight = F::from_array(near[q]);
-        centre = centre + positions[q] * weight;
-        total += weight;
-    }
-    let centre = centre * (F::one() / total);
-    let normal = V8::from_arrays(lanes.normal);
-    fill_friction(&mut block.friction, &a, &b, normal, centre);
-    block.friction.static_coefficient = F::from_array(lanes.friction[0]);
-    block.friction.kinetic_coefficient = F::from_array(lanes.friction[1]);
-    let mut radius = F::zero();
-    for q in 0..4 {
-        radius += F::from_array(near[q]) * (positions[q] - centre).length();
-    }
-    block.friction.radius = (radius / total).max(F::from_array(lanes.patch));
-    guess_friction(block, lanes, &positions, centre, up);
-}
-
-/// How much of the friction each point answers for: 1 for the lowest, 0 for those that are further than [`NEAR_M`] above it.
-#[inline(always)]
-fn nearness(lanes: &Arrays) -> [[f32; LANES]; 4] {
-    let mut near = [[0.0; LANES]; 4];
-    for lane in 0..LANES {
-        let least = (0..4).fold(f32::INFINITY, |least, q| least.min(lanes.separation[q][lane]));
-        for q in 0..4 {
-            let above = lanes.separation[q][lane] - least;
-            near[q][lane] = lanes.valid[q][lane] * (1.0 - above / NEAR_M).max(0.0);
+    fn side(&self, centre: V8<F>, axes: &[V8<F>; 3]) -> Side<F> {
+        Side {
+            scale: self.scale,
+            offset: along(axes, centre - self.position),
+            turns: [self.scaled(axes[0]), self.scaled(axes[1]), self.scaled(axes[2])],
         }
     }
-    near
 }
 
 #[inline(always)]
-fn fill_friction<F: Lanes>(
-    rows: &mut FrictionRows<F>,
-    a: &Side<F>,
-    b: &Side<F>,
-    normal: V8<F>,
-    centre: V8<F>,
+fn along<F: Lanes>(axes: &[V8<F>; 3], v: V8<F>) -> V8<F> {
+    V8 { x: axes[0].dot(v), y: axes[1].dot(v), z: axes[2].dot(v) }
+}
+
+impl<F: Lanes> Ends<F> {
+    /// Friction is the geometric mean, restitution the larger of the two.
+    #[inline(always)]
+    fn surface(&self) -> Surface<F> {
+        let (a, b) = (&self.first, &self.second);
+        Surface {
+            static_friction: (a.static_friction * b.static_friction).sqrt(),
+            friction: (a.friction * b.friction).sqrt(),
+            restitution: a.restitution.max(b.restitution),
+            patch: F::splat(PATCH_PART) * a.half_thickness.min(b.half_thickness),
+        }
+    }
+
+    /// What lies below moves less than its mass says, and never more than what lies above.
+    #[inline(always)]
+    fn share_yield(&self, detail: &mut Detail<F>, manifolds: &Manifolds<F>, shock_yield: F) {
+        let (low, high) = (manifolds.levels[0], manifolds.levels[1]);
+        let (a, b) = (self.first.inverse_mass, self.second.inverse_mass);
+        // 1, or less where the lower body is the lighter one: the ratio of the inverse masses.
+        let below = |own: F, other: F| {
+            let lighter = other.lt(own);
+            shock_yield * lighter.select(other / lighter.select(own, F::one()), F::one())
+        };
+        detail.first_yields = low.lt(high).select(below(a, b), F::one());
+        detail.second_yields = high.lt(low).select(below(b, a), F::one());
+    }
+}
+
+/// The middle of the points that lie lowest: where friction acts.
+struct Middle<F> {
+    place: V8<F>,
+    /// Mean distance of the points from it.
+    radius: F,
+}
+
+impl<F: Lanes> Middle<F> {
+    #[inline(always)]
+    fn of(manifolds: &Manifolds<F>) -> Self {
+        let mut least = F::splat(1e30);
+        for q in 0..4 {
+            let is_point = manifolds.valid[q].gt(F::zero());
+            least = is_point.select(manifolds.separation[q], least).min(least);
+        }
+        // How much of the friction each point answers for.
+        let mut near = [F::zero(); 4];
+        let (mut place, mut total) = (V8::zero(), F::splat(TINY));
+        for q in 0..4 {
+            let above = (manifolds.separation[q] - least) * F::splat(1.0 / NEAR_M);
+            near[q] = manifolds.valid[q] * (F::one() - above).max(F::zero());
+            place = place + manifolds.positions[q] * near[q];
+            total += near[q];
+        }
+        let share = F::one() / total;
+        let place = place * share;
+        let mut radius = F::zero();
+        for q in 0..4 {
+            radius += near[q] * (manifolds.positions[q] - place).length();
+        }
+        Middle { place, radius: radius * share }
+    }
+}
+
+/// Axes, sides and points.
+#[inline(always)]
+fn fill_places<F: Lanes, K: Kind>(
+    block: &mut Block<F, K>,
+    manifolds: &Manifolds<F>,
+    ends: &Ends<F>,
+    middle: &Middle<F>,
 ) {
+    let normal = manifolds.normal;
     let steep = normal.x.abs().gt(F::splat(0.577_35));
     let across = steep.select_v(
         V8 { x: normal.y, y: -normal.x, z: F::zero() },
         V8 { x: F::zero(), y: normal.z, z: -normal.y },
     );
-    let t1 = across * (F::one() / across.length().max(F::splat(1e-15)));
-    let t2 = normal.cross(t1);
-    rows.tangents = [t1, t2];
-    rows.first = [a.arm(centre, t1), a.arm(centre, t2)];
-    rows.second = [b.arm(centre, t1), b.arm(centre, t2)];
-    let k11 = a.k(F::one(), rows.first[0]) + b.k(F::one(), rows.second[0]);
-    let k22 = a.k(F::one(), rows.first[1]) + b.k(F::one(), rows.second[1]);
-    let k12 = a.answers * rows.first[0].dot(rows.first[1]) + b.answers * rows.second[0].dot(rows.second[1]);
-    let inverse = F::one() / (k11 * k22 - k12 * k12 + F::splat(1e-20));
-    rows.inverse_k = [k22 * inverse, -k12 * inverse, k11 * inverse];
-    rows.twist_first = a.scaled(normal);
-    rows.twist_second = b.scaled(normal);
-    let k = a.k(F::zero(), rows.twist_first) + b.k(F::zero(), rows.twist_second) + F::splat(TINY);
-    rows.twist_inverse_k = F::one() / k;
+    block.normal = normal;
+    block.tangent = across * (F::one() / across.length().max(F::splat(1e-15)));
+    let axes = block.axes();
+    block.first = ends.first.side(middle.place, &axes);
+    block.second = ends.second.side(middle.place, &axes);
+    for q in 0..4 {
+        let is_point = manifolds.valid[q].gt(F::zero());
+        let place = is_point.select_v(along(&axes, manifolds.positions[q] - middle.place), V8::zero());
+        let normal = if K::NORMALS { along(&axes, manifolds.normals[q]) } else { V8::zero() };
+        block.points[q] = K::Point::new(place, normal);
+    }
 }
 
-/// Both first guesses of the friction: for all that the contacts carry, and the part of it that is momentum.
+/// What an impulse along one row does to the speed along another.
+struct Pairs<F> {
+    answers: [F; 2],
+    /// Of the two sides together.
+    linear: F,
+    /// By side and point, and by side and row of friction: two tangents, twist.
+    arms: [[V8<F>; 4]; 2],
+    friction: [[V8<F>; 3]; 2],
+}
+
+impl<F: Lanes> Pairs<F> {
+    #[inline(always)]
+    fn of<K: Kind>(block: &Block<F, K>, ends: &Ends<F>) -> Self {
+        let answers = [ends.first.answers, ends.second.answers];
+        let (sa, sb) = (ends.first.scale, ends.second.scale);
+        let linear = answers[0] * (sa * sa) + answers[1] * (sb * sb);
+        let mut arms = [[V8::zero(); 4]; 2];
+        let mut friction = [[V8::zero(); 3]; 2];
+        for s in 0..2 {
+            let side = if s == 0 { &block.first } else { &block.second };
+            for q in 0..4 {
+                arms[s][q] = block.points[q].arm(side);
+            }
+            let mut tangent = [Push::zero(); 2];
+            tangent[0].force.x = F::one();
+            tangent[1].force.y = F::one();
+            friction[s] = [side.arm(&tangent[0]), side.arm(&tangent[1]), side.turns[2]];
+        }
+        Pairs { answers, linear, arms, friction }
+    }
+
+    #[inline(always)]
+    fn angular(&self, first: (V8<F>, V8<F>), second: (V8<F>, V8<F>)) -> F {
+        self.answers[0] * first.0.dot(first.1) + self.answers[1] * second.0.dot(second.1)
+    }
+}
+
 #[inline(always)]
-fn guess_friction<F: Lanes>(
-    block: &mut Block<F>,
-    lanes: &Arrays,
-    positions: &[V8<F>; 4],
-    centre: V8<F>,
+fn fill_points<F: Lanes, K: Kind>(
+    block: &mut Block<F, K>,
+    detail: &mut Detail<F>,
+    manifolds: &Manifolds<F>,
+    pairs: &Pairs<F>,
+    per_second: F,
+) {
+    let (mut count, mut all) = (F::zero(), F::splat(TINY));
+    let mut row_sums = [F::zero(); 4];
+    let [a, b] = &pairs.arms;
+    for p in 0..4 {
+        let valid = manifolds.valid[p];
+        for q in 0..p {
+            let cosine =
+                if K::NORMALS { block.points[p].normal().dot(block.points[q].normal()) } else { F::one() };
+            let k = pairs.linear * cosine + pairs.angular((a[p], a[q]), (b[p], b[q]));
+            block.coupling[coupling(p, q)] = k;
+            row_sums[p] += k * manifolds.valid[q];
+            row_sums[q] += k * valid;
+        }
+        let own = pairs.linear + pairs.angular((a[p], a[p]), (b[p], b[p])) + F::splat(TINY);
+        row_sums[p] += own * valid;
+        block.inverse_k[p] = valid / own;
+        block.impulses[p] = manifolds.total[p];
+        block.allowed[p] = manifolds.separation[p].max(F::zero()) * per_second;
+        count += valid;
+        let [f, g] = &pairs.friction;
+        let normal = block.points[p].normal();
+        for k in 0..3 {
+            let linear = if K::NORMALS && k < 2 {
+                pairs.linear * if k == 0 { normal.x } else { normal.y }
+            } else {
+                F::zero()
+            };
+            block.friction.drag[k][p] = linear + pairs.angular((f[k], a[p]), (g[k], b[p]));
+        }
+    }
+    for p in 0..4 {
+        all += row_sums[p] * manifolds.valid[p];
+    }
+    block.row_sums = row_sums;
+    let has_points = count.gt(F::zero());
+    block.mean_gain = has_points.select(F::one() / all, F::zero());
+    detail.inverse_count = F::one() / count.max(F::one());
+}
+
+#[inline(always)]
+fn fill_friction<F: Lanes, K: Kind>(block: &mut Block<F, K>, pairs: &Pairs<F>) {
+    let [f, g] = &pairs.friction;
+    let k11 = pairs.linear + pairs.angular((f[0], f[0]), (g[0], g[0])) + F::splat(TINY);
+    let k22 = pairs.linear + pairs.angular((f[1], f[1]), (g[1], g[1])) + F::splat(TINY);
+    let k12 = pairs.angular((f[0], f[1]), (g[0], g[1]));
+    let inverse = F::one() / (k11 * k22 - k12 * k12 + F::splat(1e-20));
+    block.friction.inverse_k = [k22 * inverse, -k12 * inverse, k11 * inverse];
+    block.friction.twist_inverse_k = F::one() / (pairs.angular((f[2], f[2]), (g[2], g[2])) + F::splat(TINY));
+}
+
+/// Both first guesses of the impulses: all that the contacts carry, and the part of it that is momentum.
+#[inline(always)]
+fn guess<F: Lanes, K: Kind>(
+    block: &mut Block<F, K>,
+    detail: &mut Detail<F>,
+    manifolds: &Manifolds<F>,
+    middle: &Middle<F>,
     up: Vec3,
 ) {
     let up = V8 { x: F::splat(up.x), y: F::splat(up.y), z: F::splat(up.z) };
-    let place = Place {
-        positions,
-        centre,
-        normal: V8::from_arrays(lanes.normal),
-        up,
-        slide: V8::from_arrays(lanes.slide),
-    };
-    let mut total = [F::zero(); 4];
-    let mut weight = [F::zero(); 4];
+    let all = friction_of::<F, K>(block, manifolds, middle, up, &manifolds.total);
+    block.friction.impulses = all;
+    let mut points = [F::zero(); 4];
+    let mut most = F::zero();
     for q in 0..4 {
-        total[q] = F::from_array(lanes.total[q]);
-        weight[q] = F::from_array(lanes.weight[q]);
-        block.momentum.points[q] = total[q] - weight[q];
+        points[q] = manifolds.total[q] - manifolds.weight[q];
+        most = most.max(points[q].abs());
     }
-    let all = place.friction_of(block, &total);
-    let still = place.friction_of(block, &weight);
-    block.momentum.tangents = [all[0] - still[0], all[1] - still[1]];
-    block.momentum.twist = all[2] - still[2];
-    block.friction.impulses = [all[0], all[1]];
-    block.friction.twist_impulse = all[2];
-}
-
-/// Where the guessed impulses act.
-struct Place<'a, F> {
-    positions: &'a [V8<F>; 4],
-    centre: V8<F>,
-    normal: V8<F>,
-    up: V8<F>,
-    /// Which way friction pushes the second body, where the two slide; else zero.
-    slide: V8<F>,
-}
-
-impl<F: Lanes> Place<'_, F> {
-    /// The friction (two tangents, twist) that makes normal impulses add up to vertical forces, within the cone, at the loaded centre.
-    #[inline(always)]
-    fn friction_of(&self, block: &Block<F>, impulses: &[F; 4]) -> [F; 3] {
-        let rows = &block.friction;
-        let (mut sum, mut tangential, mut loaded) = (F::zero(), V8::zero(), V8::zero());
-        for q in 0..4 {
-            let n = block.points[q].normal;
-            let rise = n.dot(self.up);
-            let rises = rise.abs().gt(F::splat(RISE_MIN));
-            let vertical = rises.select(impulses[q] / rises.select(rise, F::one()), impulses[q] * rise);
-            tangential = tangential + self.up * vertical - n * impulses[q];
-            loaded = loaded + self.positions[q] * impulses[q];
-            sum += impulses[q];
+    let mut friction = [F::zero(); 3];
+    if most.gt(F::zero()).any() {
+        let still = friction_of::<F, K>(block, manifolds, middle, up, &manifolds.weight);
+        for k in 0..3 {
+            friction[k] = all[k] - still[k];
         }
-        let slides = self.slide.dot(self.slide).gt(F::splat(0.5));
-        let tangential = slides.select_v(self.slide * (sum * rows.kinetic_coefficient), tangential);
-        let (x, y) = (tangential.dot(rows.tangents[0]), tangential.dot(rows.tangents[1]));
-        let length = (x * x + y * y).sqrt();
-        let limit = sum * rows.kinetic_coefficient;
-        let scale = limit.lt(length).select(limit / length.max(F::splat(1e-20)), F::one());
-        let (x, y) = (x * scale, y * scale);
-        let offset = loaded * (F::one() / sum.max(F::splat(TINY))) - self.centre;
-        let force = rows.tangents[0] * x + rows.tangents[1] * y;
-        let twist = sum.gt(F::zero()).select(offset.cross(force).dot(self.normal), F::zero());
-        [x, y, twist]
     }
+    detail.momentum = Impulses { points, friction };
+}
+
+/// The friction (two tangents, twist) that makes normal impulses add up to vertical forces, within the cone, at the loaded centre.
+#[inline(always)]
+fn friction_of<F: Lanes, K: Kind>(
+    block: &Block<F, K>,
+    manifolds: &Manifolds<F>,
+    middle: &Middle<F>,
+    up: V8<F>,
+    impulses: &[F; 4],
+) -> [F; 3] {
+    let [t1, t2, n] = block.axes();
+    let (mut sum, mut tangential, mut loaded) = (F::zero(), V8::zero(), V8::zero());
+    for q in 0..4 {
+        let n = if K::NORMALS { manifolds.normals[q] } else { n };
+        let rise = n.dot(up);
+        let rises = rise.abs().gt(F::splat(RISE_MIN));
+        let per_impulse = rises.select(F::one() / rises.select(rise, F::one()), rise);
+        tangential = tangential + (up * per_impulse - n) * impulses[q];
+        loaded = loaded + manifolds.positions[q] * impulses[q];
+        sum += impulses[q];
+    }
+    let slides = manifolds.slide.dot(manifolds.slide).gt(F::splat(0.5));
+    let limit = sum * block.friction.kinetic_coefficient;
+    let tangential = slides.select_v(manifolds.slide * limit, tangential);
+    let (x, y) = (tangential.dot(t1), tangential.dot(t2));
+    let length = (x * x + y * y).sqrt();
+    let scale = limit.lt(length).select(limit / length.max(F::splat(1e-20)), F::one());
+    let (x, y) = (x * scale, y * scale);
+    let offset = loaded * (F::one() / sum.max(F::splat(TINY))) - middle.place;
+    let force = t1 * x + t2 * y;
+    let twist = sum.gt(F::zero()).select(offset.cross(force).dot(n), F::zero());
+    [x, y, twist]
 }

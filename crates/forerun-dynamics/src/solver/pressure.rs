@@ -25,60 +25,90 @@ pub(super) struct Support {
     /// Horizontal place relative to the body's centre, where the line of the force, friction of a slide included, is as high as the centre.
     pub(super) x: f32,
     pub(super) z: f32,
+    /// The same for the body below.
+    pub(super) below_x: f32,
+    pub(super) below_z: f32,
     pub(super) contact: u32,
     pub(super) point: u32,
     pub(super) below: u32,
     pub(super) rise: f32,
-    /// 1 in full touch, 0 where the points just miss each other.
+    /// 1 in full touch, next to 0 where the points just miss each other; 0 for a point that is dropped.
     pub(super) weight: f32,
-    pub(super) dropped: bool,
     pub(super) total: f32,
     pub(super) still: f32,
 }
 
+impl Support {
+    /// Whether the point would have to pull.
+    pub(super) fn dropped(&self) -> bool {
+        self.weight == 0.0
+    }
+}
+
 /// Spreads the load over the supports as an affine function of the place, without pulling.
 pub(super) fn fit(supports: &mut [Support], total: &Carried, still: &Carried, ridge: f32) {
-    for round in 0..REFITS {
-        let active = || supports.iter().filter(|s| !s.dropped);
-        let weight: f32 = active().map(|s| s.weight).sum();
-        let cx = active().map(|s| s.x * s.weight).sum::<f32>() / weight;
-        let cz = active().map(|s| s.z * s.weight).sum::<f32>() / weight;
-        let (mut xx, mut xz, mut zz) = (ridge * weight, 0.0, ridge * weight);
-        for s in active() {
-            let (x, z) = (s.x - cx, s.z - cz);
-            xx += s.weight * x * x;
-            xz += s.weight * x * z;
-            zz += s.weight * z * z;
-        }
-        let inverse = 1.0 / (xx * zz - xz * xz);
-        let slopes = |load: &Carried| {
-            let (m1, m2) = (load.moment_1 - load.sum * cx, load.moment_2 - load.sum * cz);
-            ((m1 * zz - m2 * xz) * inverse, (m2 * xx - m1 * xz) * inverse)
-        };
-        let (tx, tz) = slopes(total);
-        let (sx, sz) = slopes(still);
-        let mut pulls = false;
-        for s in supports.iter_mut().filter(|s| !s.dropped) {
-            let (x, z) = (s.x - cx, s.z - cz);
-            s.still = s.weight * (still.sum / weight + x * sx + z * sz);
-            s.total = s.weight * (total.sum / weight + x * tx + z * tz);
-            if s.total < 0.0 {
-                s.dropped = true;
-                pulls = true;
-            }
-        }
-        if !pulls || round + 1 == REFITS || supports.iter().all(|s| s.dropped) {
+    let mut kept = supports.len();
+    for _ in 0..REFITS {
+        let dropped = spread(supports, total, still, ridge);
+        kept -= dropped;
+        if dropped == 0 || kept == 0 {
             break;
         }
     }
-    let kept = || supports.iter().filter(|s| !s.dropped);
-    let scale = |wanted: f32, got: f32| if got > 0.0 { wanted / got } else { 0.0 };
-    let of_total = scale(total.sum, kept().map(|s| s.total).sum());
-    let of_still = scale(still.sum, kept().map(|s| s.still.max(0.0)).sum());
+    let (mut of_total, mut of_still) = (0.0, 0.0);
     for s in supports.iter_mut() {
-        s.total *= of_total;
-        s.still = s.still.max(0.0) * of_still;
+        if s.dropped() {
+            s.total = 0.0;
+            s.still = 0.0;
+        }
+        s.still = s.still.max(0.0);
+        of_total += s.total;
+        of_still += s.still;
     }
+    let scale = |wanted: f32, got: f32| if got > 0.0 { wanted / got } else { 0.0 };
+    let (of_total, of_still) = (scale(total.sum, of_total), scale(still.sum, of_still));
+    for s in supports {
+        s.total *= of_total;
+        s.still *= of_still;
+    }
+}
+
+/// One fit over the points that are left. Drops those that would have to pull, and returns how many.
+fn spread(supports: &mut [Support], total: &Carried, still: &Carried, ridge: f32) -> usize {
+    // Points that are dropped weigh nothing, and add nothing to the sums.
+    let (mut weight, mut cx, mut cz) = (0.0, 0.0, 0.0);
+    for s in supports.iter() {
+        weight += s.weight;
+        cx += s.x * s.weight;
+        cz += s.z * s.weight;
+    }
+    let (cx, cz) = (cx / weight, cz / weight);
+    let (mut xx, mut xz, mut zz) = (ridge * weight, 0.0, ridge * weight);
+    for s in supports.iter() {
+        let (x, z) = (s.x - cx, s.z - cz);
+        xx += s.weight * x * x;
+        xz += s.weight * x * z;
+        zz += s.weight * z * z;
+    }
+    let inverse = 1.0 / (xx * zz - xz * xz);
+    let slopes = |load: &Carried| {
+        let (m1, m2) = (load.moment_1 - load.sum * cx, load.moment_2 - load.sum * cz);
+        ((m1 * zz - m2 * xz) * inverse, (m2 * xx - m1 * xz) * inverse)
+    };
+    let (tx, tz) = slopes(total);
+    let (sx, sz) = slopes(still);
+    let (mean_total, mean_still) = (total.sum / weight, still.sum / weight);
+    let mut dropped = 0;
+    for s in supports {
+        let (x, z) = (s.x - cx, s.z - cz);
+        s.still = s.weight * (mean_still + x * sx + z * sz);
+        s.total = s.weight * (mean_total + x * tx + z * tz);
+        if s.total < 0.0 {
+            s.weight = 0.0;
+            dropped += 1;
+        }
+    }
+    dropped
 }
 
 #[cfg(test)]
@@ -89,12 +119,13 @@ mod tests {
         let at = |&(x, z)| Support {
             x,
             z,
+            below_x: 0.0,
+            below_z: 0.0,
             contact: 0,
             point: 0,
             below: 0,
             rise: 1.0,
             weight: 1.0,
-            dropped: false,
             total: 0.0,
             still: 0.0,
         };
@@ -113,7 +144,7 @@ mod tests {
         assert!((moment(|_| 1.0) - 10.0).abs() < 1e-5);
         assert!((moment(|s| s.x) - 3.0).abs() < 1e-5);
         assert!((moment(|s| s.z) + 2.0).abs() < 1e-5);
-        assert!(points.iter().all(|s| s.still.to_bits() == s.total.to_bits() && !s.dropped));
+        assert!(points.iter().all(|s| s.still.to_bits() == s.total.to_bits() && !s.dropped()));
     }
 
     #[test]
@@ -122,7 +153,7 @@ mod tests {
         load.add(10.0, 1.5, 0.0);
         let mut points = supports(&SQUARE);
         fit(&mut points, &load, &load, 1e-9);
-        let dropped: Vec<bool> = points.iter().map(|s| s.dropped).collect();
+        let dropped: Vec<bool> = points.iter().map(Support::dropped).collect();
         assert_eq!(dropped, [true, false, false, true]);
         assert!(points[1..3].iter().all(|s| (s.total - 5.0).abs() < 1e-4), "{points:?}");
     }

@@ -7,9 +7,9 @@
 
 use forerun_geometry::{Quat, Shape, Vec3};
 
+use super::batch::{ContactList, Ends};
 use super::islands::Islands;
-use crate::narrow_phase::Contact;
-use crate::{BodyState, Environment, Member, StepSettings};
+use crate::{BodyState, Environment, Member};
 
 /// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
 const SHALLOW_REST: u32 = 4;
@@ -30,6 +30,8 @@ pub(crate) struct Ending {
     pub(crate) touches: bool,
     /// Whether it overlaps too deep to come to rest, or touches one that does: there must be room to push it out.
     pub(crate) crammed: bool,
+    /// Whether it overlaps too deep to come to rest.
+    deep: bool,
 }
 
 /// A body that goes on its way faster than this part of `rest_speed` is not quiet.
@@ -42,75 +44,113 @@ const TURNS: f32 = 2.0;
 const UNSTEADY: f32 = 0.125;
 
 /// What the end of a frame needs to know of its contacts, and of who drives whom.
-pub(crate) struct IslandsAt<'a> {
+pub(crate) struct Resting<'a> {
+    pub(crate) members: &'a [Member<'a>],
+    pub(crate) contacts: ContactList<'a>,
+    /// By contact: its smallest separation at the start. Metres.
+    pub(crate) deepest: &'a [f32],
     pub(crate) islands: &'a Islands,
-    /// By root: whether a moving kinematic body touches the island.
+    /// By island: whether a moving kinematic body touches it.
     pub(crate) driven: &'a [bool],
-    pub(crate) contacts: &'a [Contact],
+    pub(crate) environment: &'a Environment,
 }
 
-/// What contacts tell of the bodies at the end of a frame that started with these spins.
-pub(crate) fn endings(
-    members: &[Member],
-    contacts: &[Contact],
-    spins: &[Vec3],
-    settings: &StepSettings,
-) -> Vec<Ending> {
-    let mut endings: Vec<Ending> = spins.iter().map(|&spin| Ending { spin, ..Ending::default() }).collect();
-    let touching = || contacts.iter().filter(|c| c.manifold.deepest() < REST_TOUCH_M);
-    for c in touching() {
-        for i in [c.first as usize, c.second as usize] {
-            endings[i].overlap = endings[i].overlap.max(-c.manifold.deepest());
-            endings[i].touches = true;
-        }
+impl Resting<'_> {
+    /// Bodies that touch at the start of the frame, by contact, with its number.
+    fn touching(&self) -> impl Iterator<Item = (usize, &Ends)> {
+        self.contacts.ends.iter().enumerate().filter(|(k, _)| self.deepest[*k] < REST_TOUCH_M)
     }
-    let deep = |i: usize| {
-        let body = members[i].body;
-        body.is_dynamic() && endings[i].overlap > settings.rest_overlap_m.min(REST_PART * body.half_thickness)
-    };
-    let deep: Vec<bool> = (0..members.len()).map(deep).collect();
-    for c in touching() {
-        let crammed = deep[c.first as usize] || deep[c.second as usize];
-        endings[c.first as usize].crammed |= crammed;
-        endings[c.second as usize].crammed |= crammed;
-    }
-    endings
-}
 
-/// Counts the quiet frames of each body, and stops those that have come to rest.
-pub(crate) fn settle(
-    members: &[Member],
-    next: &mut [BodyState],
-    endings: &[Ending],
-    at: &IslandsAt,
-    environment: &Environment,
-) {
-    let full = environment.settings.rest_frames();
-    if full == 0 {
-        next.iter_mut().for_each(|state| state.rest = 0);
-        return;
+    /// What contacts tell of the bodies at the end of a frame that started with these spins.
+    pub(crate) fn find_endings(&self, spins: &[Vec3], endings: &mut Vec<Ending>) {
+        endings.clear();
+        endings.extend(spins.iter().map(|&spin| Ending { spin, ..Ending::default() }));
+        let settings = &self.environment.settings;
+        if settings.rest_frames() == 0 {
+            return;
+        }
+        for (k, e) in self.touching() {
+            for ending in [e.first, e.second] {
+                let ending = &mut endings[ending as usize];
+                ending.overlap = ending.overlap.max(-self.deepest[k]);
+                ending.touches = true;
+            }
+        }
+        let mut any = false;
+        for (member, ending) in self.members.iter().zip(endings.iter_mut()) {
+            let body = member.body;
+            let most = settings.rest_overlap_m.min(REST_PART * body.half_thickness);
+            ending.deep = body.is_dynamic() && ending.overlap > most;
+            any |= ending.deep;
+        }
+        if !any {
+            return;
+        }
+        for (_, e) in self.touching() {
+            let (first, second) = (e.first as usize, e.second as usize);
+            let crammed = endings[first].deep || endings[second].deep;
+            endings[first].crammed |= crammed;
+            endings[second].crammed |= crammed;
+        }
     }
-    let islands = at.islands;
-    let carried = carried(members, next, at.contacts, environment);
-    let mut fixpoint = vec![true; members.len()];
-    for (i, member) in members.iter().enumerate() {
-        if !member.body.is_dynamic() {
-            continue;
+
+    /// Counts the quiet frames of each body, and stops those that have come to rest.
+    pub(crate) fn settle(&self, next: &mut [BodyState], endings: &[Ending]) {
+        let full = self.environment.settings.rest_frames();
+        if full == 0 {
+            next.iter_mut().for_each(|state| state.rest = 0);
+            return;
         }
-        // What a moving body carries or pushes goes with it, however slowly.
-        let held = endings[i].touches && !at.driven[islands.root(i)] && !carried[i];
-        let calm = held && quiet(member, &next[i], environment);
-        next[i].rest = if calm { counted(member, &endings[i], environment) } else { 0 };
-        if next[i].rest < full || member.state.rest < full {
-            fixpoint[islands.root(i)] = false;
+        let carried = self.carried(next);
+        let mut fixpoint = vec![true; self.islands.count() + 1];
+        for (i, member) in self.members.iter().enumerate() {
+            if !member.body.is_dynamic() {
+                continue;
+            }
+            // What a moving body carries or pushes goes with it, however slowly.
+            let taken_along = carried.as_ref().is_some_and(|carried| carried[i]);
+            let held = endings[i].touches && !self.driven[self.islands.root(i)] && !taken_along;
+            let calm = held && quiet(member, &next[i], self.environment);
+            next[i].rest = if calm { counted(member, &endings[i], self.environment) } else { 0 };
+            if next[i].rest < full || member.state.rest < full {
+                fixpoint[self.islands.root(i)] = false;
+            }
+        }
+        for (i, member) in self.members.iter().enumerate() {
+            if member.body.is_dynamic() && next[i].rest == full {
+                let rest = if fixpoint[self.islands.root(i)] { full + 1 } else { full };
+                let pose = member.state;
+                next[i] = BodyState { velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO, rest, ..pose };
+            }
         }
     }
-    for (i, member) in members.iter().enumerate() {
-        if member.body.is_dynamic() && next[i].rest == full {
-            let rest = if fixpoint[islands.root(i)] { full + 1 } else { full };
-            let pose = member.state;
-            next[i] = BodyState { velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO, rest, ..pose };
+
+    /// Bodies that one which goes on its way takes along where they touch, if any goes on its way.
+    fn carried(&self, next: &[BodyState]) -> Option<Vec<bool>> {
+        let drifting: Vec<bool> = (self.members.iter().zip(next))
+            .map(|(m, next)| m.body.is_dynamic() && drifts(m, next, self.environment, FOLLOWS))
+            .collect();
+        if !drifting.contains(&true) {
+            return None;
         }
+        let limit = DRIFT_PART * self.environment.settings.rest_speed;
+        let limit2 = limit * limit;
+        let mut carried = vec![false; self.members.len()];
+        for (k, e) in self.touching() {
+            for (mover, other) in
+                [(e.first as usize, e.second as usize), (e.second as usize, e.first as usize)]
+            {
+                if drifting[mover] && self.members[other].body.is_dynamic() {
+                    let point = self.contacts.manifold(k).points[0].position;
+                    let (leads, follows) = (next[mover].velocity_at(point), next[other].velocity_at(point));
+                    // A ball that rolls stands still where it touches.
+                    let speed2 = leads.length_squared();
+                    let along = (leads - follows).length_squared() < FOLLOWS * FOLLOWS * speed2;
+                    carried[other] |= along && speed2 > limit2;
+                }
+            }
+        }
+        Some(carried)
     }
 }
 
@@ -132,34 +172,6 @@ fn counted(member: &Member, ending: &Ending, environment: &Environment) -> u32 {
 
 /// What moves with another at the point where they touch, but for this part, is taken along; and it may slow the other by as much.
 const FOLLOWS: f32 = 0.2;
-
-/// Bodies that one which goes on its way takes along where they touch.
-fn carried(
-    members: &[Member],
-    next: &[BodyState],
-    contacts: &[Contact],
-    environment: &Environment,
-) -> Vec<bool> {
-    let drifting: Vec<bool> = (members.iter().zip(next))
-        .map(|(m, next)| m.body.is_dynamic() && drifts(m, next, environment, FOLLOWS))
-        .collect();
-    let limit = DRIFT_PART * environment.settings.rest_speed;
-    let limit2 = limit * limit;
-    let mut carried = vec![false; members.len()];
-    for c in contacts.iter().filter(|c| c.manifold.deepest() < REST_TOUCH_M) {
-        let point = c.manifold.points[0].position;
-        for (mover, other) in [(c.first as usize, c.second as usize), (c.second as usize, c.first as usize)] {
-            if drifting[mover] && members[other].body.is_dynamic() {
-                let (leads, follows) = (next[mover].velocity_at(point), next[other].velocity_at(point));
-                // A ball that rolls stands still where it touches.
-                let speed2 = leads.length_squared();
-                let along = (leads - follows).length_squared() < FOLLOWS * FOLLOWS * speed2;
-                carried[other] |= along && speed2 > limit2;
-            }
-        }
-    }
-    carried
-}
 
 /// The rest counter after a frame that was done in slices: quiet or not over the whole of it, and never at rest.
 pub(crate) fn rest_after_slices(member: &Member, next: &BodyState, environment: &Environment) -> u32 {

@@ -3,15 +3,17 @@
 //! The classic form (Guendelman et al. 2003, section 8; dissertation 2.4.7) gives what is below infinite mass and acts on velocities; it is here for
 //! comparison, see [`ShockPropagation`](crate::ShockPropagation). The usual one acts on positions alone, so that it adds no velocity.
 
-use super::blocks::Block;
-use super::sweep::{Jacobian, Sides};
+use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
+use super::points::{Kind, Point};
+use super::sides::{Jacobian, Sides};
 use crate::StepSettings;
-use crate::lanes::{LaneMask, Lanes, Row, dispatched};
+use crate::lanes::{LaneMask, Lanes, Portable, Row, V8, dispatched, recast};
 
 dispatched! {
     /// One pass over all blocks, on the displacements. `push_max` is the most overlap it removes, in metres.
-    pub(crate) fn propagate_shock(
-        blocks: &mut [Block],
+    pub(crate) fn propagate_shock<K: Kind>(
+        blocks: &[Block<Portable, K>],
+        details: &[Detail<Portable>],
         displacements: &mut [Row],
         settings: &StepSettings,
         push_max: f32,
@@ -19,107 +21,129 @@ dispatched! {
 }
 
 #[inline(always)]
-fn propagate_lanes<F: Lanes>(
-    blocks: &mut [Block<F>],
+fn propagate_lanes<F: Lanes, K: Kind>(
+    blocks: &[Block<Portable, K>],
+    details: &[Detail<Portable>],
     displacements: &mut [Row],
     settings: &StepSettings,
     push_max: f32,
 ) {
-    let part = F::splat(settings.overlap_recovery);
-    let allowed = F::splat(settings.overlap_allowed_m);
-    let most = F::splat(push_max);
-    for block in blocks {
-        push_out(block, displacements, part, allowed, most);
+    let blocks = recast::<F, BlocksOf<K>>(blocks);
+    for (block, detail) in blocks.iter().zip(recast::<F, DetailsOf>(details)) {
+        let mut d = Sides::gather(block, displacements);
+        let Some(wanted) = Wanted::of(block, detail, &d, settings, push_max) else {
+            continue;
+        };
+        push_out(block, detail, &mut d, &wanted);
+        d.scatter(block, displacements);
     }
 }
 
-dispatched! {
-    /// The classic form: one pass over the velocities, by rising level, as if the lower body of every contact had infinite mass.
-    pub(crate) fn propagate_classic(
-        blocks: &mut [Block],
-        velocities: &mut [Row],
-        displacements: &[Row],
-        substep_seconds: f32,
-    ) => classic_lanes
-}
-
-#[inline(always)]
-fn classic_lanes<F: Lanes>(
-    blocks: &mut [Block<F>],
+/// The classic form: one pass over the velocities, by rising level, as if the lower body of every contact had infinite mass. For comparison, and so not
+/// compiled for any instruction set.
+pub(crate) fn propagate_classic<K: Kind>(
+    blocks: &[Block<Portable, K>],
+    details: &[Detail<Portable>],
     velocities: &mut [Row],
     displacements: &[Row],
     substep_seconds: f32,
 ) {
+    type F = Portable;
     let per_second = F::splat(1.0 / substep_seconds);
-    for block in blocks {
+    for (block, detail) in blocks.iter().zip(details) {
         // The side that yields less than the other is the lower one.
         let lower = |own: F, other: F| own.lt(other).select(F::zero(), F::one());
-        let on_first = block.first_answers * lower(block.first_yields, block.second_yields);
-        let on_second = block.second_answers * lower(block.second_yields, block.first_yields);
+        let on_first = detail.first_answers * lower(detail.first_yields, detail.second_yields);
+        let on_second = detail.second_answers * lower(detail.second_yields, detail.first_yields);
         let mut v = Sides::gather(block, velocities);
         let moved: Sides<F> = Sides::gather(block, displacements);
-        for point in &block.points {
-            let row = point.jacobian();
-            let gap = (point.separation + moved.along(block, &row)).max(F::zero());
+        for q in 0..4 {
+            let row = block.jacobian(q);
+            let gap = (detail.separation[q] + moved.along(block, &row)).max(F::zero());
             let lacking = -(v.along(block, &row) + gap * per_second);
-            let (sa, sb) = (block.first_scale, block.second_scale);
-            let k = on_first * (sa * sa + row.first.dot(row.first))
-                + on_second * (sb * sb + row.second.dot(row.second))
-                + F::splat(1e-12);
-            let is_point = point.inverse_k.gt(F::zero());
-            let impulse = is_point.select((lacking / k).max(F::zero()), F::zero());
-            v.push(block, &row, (impulse * on_first, impulse * on_second));
+            let k = yielding_k(block, &row, (on_first, on_second));
+            let impulse = block.is_point(q).select((lacking / k).max(F::zero()), F::zero());
+            v.apply(block, &row, (impulse * on_first, impulse * on_second));
         }
         v.scatter(block, velocities);
     }
 }
 
+/// How far the points of a contact are to be pushed out, and to which separation.
+struct Wanted<F> {
+    push: [F; 4],
+    separation: [F; 4],
+    /// Sum of the pushes.
+    sum: F,
+}
+
+impl<F: Lanes> Wanted<F> {
+    /// None where no contact overlaps too deep.
+    #[inline(always)]
+    fn of<K: Kind>(
+        block: &Block<F, K>,
+        detail: &Detail<F>,
+        d: &Sides<F>,
+        settings: &StepSettings,
+        push_max: f32,
+    ) -> Option<Self> {
+        let (part, most) = (F::splat(settings.overlap_recovery), F::splat(push_max));
+        let allowed = F::splat(settings.overlap_allowed_m);
+        let moved = d.relative(block);
+        let mut wanted = Wanted { push: [F::zero(); 4], separation: [F::zero(); 4], sum: F::zero() };
+        for q in 0..4 {
+            let separation = detail.separation[q] + block.points[q].speed(&moved);
+            let excess = (-(separation + allowed)).max(F::zero());
+            let push = block.is_point(q).select((part * excess).min(most), F::zero());
+            wanted.push[q] = push;
+            wanted.separation[q] = separation + push;
+            wanted.sum += push;
+        }
+        wanted.sum.gt(F::zero()).any().then_some(wanted)
+    }
+}
+
 #[inline(always)]
-fn push_out<F: Lanes>(block: &Block<F>, displacements: &mut [Row], part: F, allowed: F, most: F) {
-    let mut d = Sides::gather(block, displacements);
-    let mut push = [F::zero(); 4];
-    let mut target = [F::zero(); 4];
-    let mut sum = F::zero();
+fn push_out<F: Lanes, K: Kind>(
+    block: &Block<F, K>,
+    detail: &Detail<F>,
+    d: &mut Sides<F>,
+    wanted: &Wanted<F>,
+) {
+    let yields = (detail.first_answers * detail.first_yields, detail.second_answers * detail.second_yields);
+    let row = mean(block, detail);
+    let flat = (wanted.sum * detail.inverse_count) / yielding_k(block, &row, yields);
+    d.apply(block, &row, (flat * yields.0, flat * yields.1));
     for q in 0..4 {
-        let point = &block.points[q];
-        let separation = point.separation + d.along(block, &point.jacobian());
-        let excess = (-(separation + allowed)).max(F::zero());
-        let is_point = point.inverse_k.gt(F::zero());
-        push[q] = is_point.select((part * excess).min(most), F::zero());
-        target[q] = separation + push[q];
-        sum += push[q];
+        let row = block.jacobian(q);
+        let separation = detail.separation[q] + d.along(block, &row);
+        let lacks = separation.lt(wanted.separation[q]) & wanted.push[q].gt(F::zero());
+        let impulse = (wanted.separation[q] - separation) / yielding_k(block, &row, yields);
+        let impulse = lacks.select(impulse, F::zero());
+        d.apply(block, &row, (impulse * yields.0, impulse * yields.1));
     }
-    if !sum.gt(F::zero()).any() {
-        return;
-    }
-    let row = block.centre_jacobian();
-    let length2 = row.direction.dot(row.direction);
-    let inverse_k = F::one() / yielding_k(block, &row, length2);
-    let flat = inverse_k * (sum * block.centre.inverse_count);
-    apply(block, &mut d, &row, flat);
+}
+
+/// The mean of the points' rows.
+#[inline(always)]
+fn mean<F: Lanes, K: Kind>(block: &Block<F, K>, detail: &Detail<F>) -> Jacobian<F> {
+    let mut mean = Jacobian { direction: V8::zero(), first: V8::zero(), second: V8::zero() };
     for q in 0..4 {
-        let point = &block.points[q];
-        let row = point.jacobian();
-        let separation = point.separation + d.along(block, &row);
-        let lacks = separation.lt(target[q]) & push[q].gt(F::zero());
-        let impulse = (target[q] - separation) / yielding_k(block, &row, F::one());
-        apply(block, &mut d, &row, lacks.select(impulse, F::zero()));
+        let share = block.is_point(q).select(detail.inverse_count, F::zero());
+        let row = block.jacobian(q);
+        mean.direction = mean.direction + row.direction * share;
+        mean.first = mean.first + row.first * share;
+        mean.second = mean.second + row.second * share;
     }
-    d.scatter(block, displacements);
+    mean
 }
 
 /// J Jᵀ with each side's yield.
 #[inline(always)]
-fn yielding_k<F: Lanes>(block: &Block<F>, row: &Jacobian<F>, length2: F) -> F {
-    let (sa, sb) = (block.first_scale, block.second_scale);
-    let a = block.first_answers * block.first_yields * (sa * sa * length2 + row.first.dot(row.first));
-    let b = block.second_answers * block.second_yields * (sb * sb * length2 + row.second.dot(row.second));
-    a + b + F::splat(1e-12)
-}
-
-#[inline(always)]
-fn apply<F: Lanes>(block: &Block<F>, d: &mut Sides<F>, row: &Jacobian<F>, impulse: F) {
-    let on_first = impulse * block.first_answers * block.first_yields;
-    let on_second = impulse * block.second_answers * block.second_yields;
-    d.push(block, row, (on_first, on_second));
+fn yielding_k<F: Lanes, K: Kind>(block: &Block<F, K>, row: &Jacobian<F>, yields: (F, F)) -> F {
+    let length2 = row.direction.dot(row.direction);
+    let (sa, sb) = (block.first.scale, block.second.scale);
+    yields.0 * (sa * sa * length2 + row.first.dot(row.first))
+        + yields.1 * (sb * sb * length2 + row.second.dot(row.second))
+        + F::splat(1e-12)
 }

@@ -1,231 +1,173 @@
 //! Sweep: one pass of sequential impulses over the blocks, in level order (Gauss-Seidel).
+//!
+//! What the rows of one contact do to each other is known beforehand, so that the bodies are read once, and pushed once by all rows together.
 
-use super::blocks::{Block, PointRow};
+use super::blocks::{Block, BlocksOf, Detail, DetailsOf, Friction};
 use super::collisions::Moving;
-use crate::lanes::{LaneMask, Lanes, Row, Twist8, V8, dispatched, gather_twist, scatter_twist};
-
-/// The two bodies of eight contacts, with the impulses applied so far.
-pub(crate) struct Sides<F> {
-    pub(crate) first: Twist8<F>,
-    pub(crate) second: Twist8<F>,
-}
-
-/// A row of the Jacobian: one direction at one point.
-#[derive(Clone, Copy)]
-pub(crate) struct Jacobian<F> {
-    pub(crate) direction: V8<F>,
-    pub(crate) first: V8<F>,
-    pub(crate) second: V8<F>,
-}
-
-impl<F: Lanes> PointRow<F> {
-    #[inline(always)]
-    pub(crate) fn jacobian(&self) -> Jacobian<F> {
-        Jacobian { direction: self.normal, first: self.first, second: self.second }
-    }
-}
-
-impl<F: Lanes> Block<F> {
-    #[inline(always)]
-    pub(crate) fn centre_jacobian(&self) -> Jacobian<F> {
-        Jacobian { direction: self.centre.normal, first: self.centre.first, second: self.centre.second }
-    }
-
-    #[inline(always)]
-    pub(crate) fn tangent_jacobian(&self, i: usize) -> Jacobian<F> {
-        let f = &self.friction;
-        Jacobian { direction: f.tangents[i], first: f.first[i], second: f.second[i] }
-    }
-
-    /// 0 in every component: the twist has no linear part.
-    #[inline(always)]
-    pub(crate) fn twist_jacobian(&self) -> Jacobian<F> {
-        let f = &self.friction;
-        Jacobian { direction: V8::zero(), first: f.twist_first, second: f.twist_second }
-    }
-}
-
-impl<F: Lanes> Sides<F> {
-    #[inline(always)]
-    pub(crate) fn gather(block: &Block<F>, rows: &[Row]) -> Self {
-        Sides { first: gather_twist(rows, &block.first), second: gather_twist(rows, &block.second) }
-    }
-
-    #[inline(always)]
-    pub(crate) fn scatter(&self, block: &Block<F>, rows: &mut [Row]) {
-        scatter_twist(rows, &block.first_out, &self.first);
-        scatter_twist(rows, &block.second_out, &self.second);
-    }
-
-    /// How fast the second side moves away from the first along a row.
-    #[inline(always)]
-    pub(crate) fn along(&self, block: &Block<F>, row: &Jacobian<F>) -> F {
-        row.direction.dot(self.second.linear) * block.second_scale
-            - row.direction.dot(self.first.linear) * block.first_scale
-            + row.second.dot(self.second.angular)
-            - row.first.dot(self.first.angular)
-    }
-
-    /// Applies an impulse along a row, scaled by each side's factor.
-    #[inline(always)]
-    pub(crate) fn push(&mut self, block: &Block<F>, row: &Jacobian<F>, impulses: (F, F)) {
-        let (on_first, on_second) = impulses;
-        self.first.linear = self.first.linear - row.direction * (block.first_scale * on_first);
-        self.first.angular = self.first.angular - row.first * on_first;
-        self.second.linear = self.second.linear + row.direction * (block.second_scale * on_second);
-        self.second.angular = self.second.angular + row.second * on_second;
-    }
-
-    /// Applies an impulse along a row to the sides that impulses move.
-    #[inline(always)]
-    pub(crate) fn apply(&mut self, block: &Block<F>, row: &Jacobian<F>, impulse: F) {
-        self.push(block, row, (impulse * block.first_answers, impulse * block.second_answers));
-    }
-}
+use super::points::{Kind, Point, Push};
+use super::sides::Sides;
+use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast, recast_mut};
 
 /// Faster than anything approaches. m/s
 const FREE_APPROACH: f32 = 1e6;
 
 dispatched! {
     /// One sweep over all blocks. A gap may close within the substep but not more; overlap is left to the shock propagation.
-    pub(crate) fn sweep(
-        blocks: &mut [Block],
-        velocities: &mut [Row],
-        displacements: &[Row],
-        substep_seconds: f32,
-    ) => solve_lanes
+    pub(crate) fn sweep<K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &mut [Row]) => sweep_lanes
 }
 
 dispatched! {
-    /// The last sweep of a substep, after the bodies have moved.
+    /// The last sweep of a substep, after the bodies have moved: finds anew how fast each point may approach.
     ///
     /// Where there are bounces, an open point of a contact that may bounce is left alone when it approaches faster than what rests: the next
     /// substep's collision is to see it.
-    pub(crate) fn relax(blocks: &mut [Block], moving: &mut Moving, bounces: bool) => relax_lanes
+    pub(crate) fn relax<K: Kind>(
+        blocks: &mut [Block<Portable, K>],
+        details: &[Detail<Portable>],
+        moving: &mut Moving,
+        bounces: bool,
+    ) => relax_lanes
 }
 
 #[inline(always)]
-fn solve_lanes<F: Lanes>(
-    blocks: &mut [Block<F>],
-    velocities: &mut [Row],
-    displacements: &[Row],
-    substep_seconds: f32,
-) {
-    let per_second = F::splat(1.0 / substep_seconds);
-    for block in blocks {
+fn sweep_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &mut [Row]) {
+    for block in recast_mut::<F, BlocksOf<K>>(blocks) {
         let mut v = Sides::gather(block, velocities);
-        let moved = Sides::gather(block, displacements);
-        let allowed = allowed(block, &moved, per_second);
-        let sum = normals(block, &mut v, &allowed);
-        friction(block, &mut v, sum);
+        let allowed = block.allowed;
+        solve(block, &mut v, &allowed);
         v.scatter(block, velocities);
     }
 }
 
 #[inline(always)]
-fn relax_lanes<F: Lanes>(blocks: &mut [Block<F>], moving: &mut Moving, bounces: bool) {
+fn relax_lanes<F: Lanes, K: Kind>(
+    blocks: &mut [Block<Portable, K>],
+    details: &[Detail<Portable>],
+    moving: &mut Moving,
+    bounces: bool,
+) {
+    let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
     let per_second = F::splat(1.0 / moving.substep_seconds);
-    for block in blocks {
+    for (block, detail) in blocks.iter_mut().zip(recast::<F, DetailsOf>(details)) {
         let mut v = Sides::gather(block, moving.velocities);
-        let moved = Sides::gather(block, moving.displacements);
-        let mut allowed = allowed(block, &moved, per_second);
-        if bounces {
-            let kick = Sides::gather(block, moving.kicks);
-            spare(block, &v, &kick, &mut allowed, F::splat(moving.substeps));
+        let moved = Sides::gather(block, moving.displacements).relative(block);
+        for q in 0..4 {
+            let gap = detail.separation[q] + block.points[q].speed(&moved);
+            block.allowed[q] = gap.max(F::zero()) * per_second;
         }
-        let sum = normals(block, &mut v, &allowed);
-        friction(block, &mut v, sum);
+        let mut allowed = block.allowed;
+        if bounces {
+            spare(block, detail, &v, moving, &mut allowed);
+        }
+        solve(block, &mut v, &allowed);
         v.scatter(block, moving.velocities);
     }
 }
 
-/// How fast each point may approach: so that its gap closes and no more.
-#[inline(always)]
-fn allowed<F: Lanes>(block: &Block<F>, moved: &Sides<F>, per_second: F) -> [F; 4] {
-    let mut allowed = [F::zero(); 4];
-    for q in 0..4 {
-        let point = &block.points[q];
-        let gap = point.separation + moved.along(block, &point.jacobian());
-        allowed[q] = gap.max(F::zero()) * per_second;
-    }
-    allowed
-}
-
 /// Lets the open points of contacts that may bounce approach as they will, if they are faster than what rests.
 #[inline(always)]
-fn spare<F: Lanes>(block: &Block<F>, v: &Sides<F>, kick: &Sides<F>, allowed: &mut [F; 4], substeps: F) {
+fn spare<F: Lanes, K: Kind>(
+    block: &Block<F, K>,
+    detail: &Detail<F>,
+    v: &Sides<F>,
+    moving: &Moving,
+    allowed: &mut [F; 4],
+) {
+    let bounces = detail.restitution.gt(F::zero());
+    if !bounces.any() {
+        return;
+    }
+    let relative = v.relative(block);
+    let kick = Sides::gather(block, moving.kicks).relative(block);
     for q in 0..4 {
         let point = &block.points[q];
-        let row = point.jacobian();
-        let fall = (-kick.along(block, &row)).max(F::zero()) * substeps;
-        let open = allowed[q].gt(F::zero()) & point.impulse.le(F::zero()) & block.restitution.gt(F::zero());
-        let fast = v.along(block, &row).lt(-fall);
+        let fall = (-point.speed(&kick)).max(F::zero()) * F::splat(moving.substeps);
+        let open = allowed[q].gt(F::zero()) & block.impulses[q].le(F::zero()) & bounces;
+        let fast = point.speed(&relative).lt(-fall);
         allowed[q] = (open & fast).select(F::splat(FREE_APPROACH), allowed[q]);
     }
 }
 
-/// Centre row, then the points. Normals before friction: the other order keeps a sliding block flatter, and lets rough pyramids of sixty
-/// rows drift by a third of a metre (measured). Returns the sum of the normal impulses.
+/// All points together, then one by one, then friction. Normals before friction: the other order keeps a sliding block flatter, and lets rough
+/// pyramids of sixty rows drift by a third of a metre (measured).
 #[inline(always)]
-fn normals<F: Lanes>(block: &mut Block<F>, v: &mut Sides<F>, allowed: &[F; 4]) -> F {
-    let (mut allowed_sum, mut least) = (F::zero(), F::splat(1e30));
+fn solve<F: Lanes, K: Kind>(block: &mut Block<F, K>, v: &mut Sides<F>, allowed: &[F; 4]) {
+    let relative = v.relative(block);
+    let mut closing = [F::zero(); 4];
     for q in 0..4 {
-        let point = &block.points[q];
-        let is_point = point.inverse_k.gt(F::zero());
-        allowed_sum += is_point.select(allowed[q], F::zero());
-        least = is_point.select(least.min(point.impulse), least);
+        closing[q] = block.points[q].speed(&relative) + allowed[q];
     }
-    let row = block.centre_jacobian();
-    let centre = &block.centre;
-    let approach = v.along(block, &row) + allowed_sum * centre.inverse_count;
-    let share = (-(centre.inverse_k * approach) * centre.inverse_count).max(-least);
-    let has_points = centre.inverse_count.gt(F::zero());
-    let share = has_points.select(share, F::zero());
-    let mut count = F::zero();
-    for point in &mut block.points {
-        let is_point = point.inverse_k.gt(F::zero());
-        point.impulse = is_point.select(point.impulse + share, point.impulse);
-        count += is_point.select(F::one(), F::zero());
-    }
-    v.apply(block, &row, share * count);
+    let before = block.impulses;
+    together(block, &mut closing);
+    one_by_one(block, &mut closing);
 
+    let mut push = Push::zero();
+    let mut slip = [relative.linear.x, relative.linear.y, relative.angular.z];
     let mut sum = F::zero();
     for q in 0..4 {
-        let point = block.points[q];
-        let row = point.jacobian();
-        let wanted = point.impulse - point.inverse_k * (v.along(block, &row) + allowed[q]);
-        let impulse = wanted.max(F::zero());
-        block.points[q].impulse = impulse;
-        sum += impulse;
-        v.apply(block, &row, impulse - point.impulse);
+        let change = block.impulses[q] - before[q];
+        block.points[q].add(change, &mut push);
+        for k in 0..3 {
+            slip[k] += block.friction.drag[k][q] * change;
+        }
+        sum += block.impulses[q];
     }
-    sum
+    let rubbed = friction(&block.friction, &slip, sum, &block.friction.impulses);
+    let old = block.friction.impulses;
+    push.rub([rubbed[0] - old[0], rubbed[1] - old[1]], rubbed[2] - old[2]);
+    block.friction.impulses = rubbed;
+    v.push(block, &push);
 }
 
-/// Friction of a contact whose normal impulses sum to `sum`: a circular cone for the tangents, its own limit for the twist.
+/// The mean of the points as one row: the same impulse at each, down to none at the least loaded. Converges faster than the points alone.
 #[inline(always)]
-pub(crate) fn friction<F: Lanes>(block: &mut Block<F>, v: &mut Sides<F>, sum: F) {
-    let (t1, t2, twist) = (block.tangent_jacobian(0), block.tangent_jacobian(1), block.twist_jacobian());
-    let f = &block.friction;
-    let (v1, v2) = (v.along(block, &t1), v.along(block, &t2));
-    let [k11, k12, k22] = f.inverse_k;
-    let (x, y) = (f.impulses[0] - (k11 * v1 + k12 * v2), f.impulses[1] - (k12 * v1 + k22 * v2));
+fn together<F: Lanes, K: Kind>(block: &mut Block<F, K>, closing: &mut [F; 4]) {
+    let (mut sum, mut least) = (F::zero(), F::splat(1e30));
+    for q in 0..4 {
+        let is_point = block.is_point(q);
+        sum += is_point.select(closing[q], F::zero());
+        least = is_point.select(block.impulses[q], least).min(least);
+    }
+    let share = (-(block.mean_gain * sum)).max(-least);
+    for q in 0..4 {
+        block.impulses[q] += block.is_point(q).select(share, F::zero());
+        closing[q] += block.row_sums[q] * share;
+    }
+}
+
+/// Each point in turn, down to no impulse.
+#[inline(always)]
+fn one_by_one<F: Lanes, K: Kind>(block: &mut Block<F, K>, closing: &mut [F; 4]) {
+    for q in 0..4 {
+        let old = block.impulses[q];
+        let impulse = (old - block.inverse_k[q] * closing[q]).max(F::zero());
+        block.impulses[q] = impulse;
+        for p in q + 1..4 {
+            closing[p] += block.coupling[coupling(p, q)] * (impulse - old);
+        }
+    }
+}
+
+/// Where [`Block::coupling`] has the effect of two different points on each other.
+#[inline(always)]
+pub(crate) fn coupling(p: usize, q: usize) -> usize {
+    let (low, high) = if p < q { (p, q) } else { (q, p) };
+    high * (high - 1) / 2 + low
+}
+
+/// Friction of a contact that slips so along its tangents and about its normal, whose normal impulses sum to `sum`: a circular cone for the tangents,
+/// its own limit for the twist.
+#[inline(always)]
+pub(crate) fn friction<F: Lanes>(rows: &Friction<F>, slip: &[F; 3], sum: F, old: &[F; 3]) -> [F; 3] {
+    let [k11, k12, k22] = rows.inverse_k;
+    let (x, y) = (old[0] - (k11 * slip[0] + k12 * slip[1]), old[1] - (k12 * slip[0] + k22 * slip[1]));
     let length = (x * x + y * y).sqrt();
-    let (sticks, slides) = (sum * f.static_coefficient, sum * f.kinetic_coefficient);
+    let (sticks, slides) = (sum * rows.static_coefficient, sum * rows.kinetic_coefficient);
     let scale = sticks.lt(length).select(slides / length.max(F::splat(1e-20)), F::one());
     // Where nothing presses nothing rubs, also where the squares above are too small for a number: a contact that does not collide must not
     // notice that another one in its block does.
     let scale = sum.gt(F::zero()).select(scale, F::zero());
-    let (x, y) = (x * scale, y * scale);
-    let (dx, dy) = (x - f.impulses[0], y - f.impulses[1]);
-
-    let spin = f.twist_impulse - f.twist_inverse_k * v.along(block, &twist);
-    let limit = slides * f.radius;
-    let spin = spin.max(-limit).min(limit);
-    let dspin = spin - f.twist_impulse;
-    block.friction.impulses = [x, y];
-    block.friction.twist_impulse = spin;
-    v.apply(block, &t1, dx);
-    v.apply(block, &t2, dy);
-    v.apply(block, &twist, dspin);
+    let limit = slides * rows.radius;
+    let spin = (old[2] - rows.twist_inverse_k * slip[2]).max(-limit).min(limit);
+    [x * scale, y * scale, spin]
 }

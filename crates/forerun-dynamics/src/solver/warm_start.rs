@@ -1,159 +1,93 @@
-//! Warm start: the guessed impulses are applied before the sweeps, and two guards keep guess and sweeps from adding kinetic energy.
+//! Warm start: the guessed impulses are applied before the sweeps of the first substep. Later substeps start from what the last one did to each body.
 
-use super::blocks::{Block, NO_CONTACT};
-use super::islands::Islands;
-use super::sweep::Sides;
-use crate::lanes::{LANES, Lanes, Portable, Row, dispatched};
-
-/// Below this optimal step the guess would add energy as it stands (it would be neutral at one half).
-const STEP_MIN: f64 = 0.52;
-/// Relative gain of energy that counts as rounding.
-const GAIN_ALLOWED: f64 = 1e-7;
+use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
+use super::points::{Kind, Point, Push};
+use super::sides::Sides;
+use crate::lanes::{Lanes, Portable, Row, dispatched, recast, recast_mut};
 
 dispatched! {
     /// Applies all impulses of all blocks to the velocities.
-    pub(crate) fn apply_impulses(blocks: &mut [Block], velocities: &mut [Row]) => apply_lanes
+    pub(crate) fn apply_impulses<K: Kind>(blocks: &[Block<Portable, K>], velocities: &mut [Row]) => apply_lanes
+}
+
+dispatched! {
+    /// Takes the momentum out of the impulses, and what it did out of the pushes of the bodies: it has been passed on and must not be passed on again.
+    pub(crate) fn remove_momentum<K: Kind>(
+        blocks: &mut [Block<Portable, K>],
+        details: &[Detail<Portable>],
+        pushes: &mut [Row],
+    ) => remove_lanes
 }
 
 #[inline(always)]
-fn apply_lanes<F: Lanes>(blocks: &mut [Block<F>], velocities: &mut [Row]) {
-    for block in blocks {
-        let mut v = Sides::gather(block, velocities);
-        for point in &block.points {
-            v.apply(block, &point.jacobian(), point.impulse);
+fn apply_lanes<F: Lanes, K: Kind>(blocks: &[Block<Portable, K>], velocities: &mut [Row]) {
+    for block in recast::<F, BlocksOf<K>>(blocks) {
+        push_sides(block, &block.impulses, &block.friction.impulses, velocities);
+    }
+}
+
+#[inline(always)]
+fn remove_lanes<F: Lanes, K: Kind>(
+    blocks: &mut [Block<Portable, K>],
+    details: &[Detail<Portable>],
+    pushes: &mut [Row],
+) {
+    let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
+    for (block, detail) in blocks.iter_mut().zip(recast::<F, DetailsOf>(details)) {
+        if !detail.has_momentum() {
+            continue;
         }
-        for i in 0..2 {
-            v.apply(block, &block.tangent_jacobian(i), block.friction.impulses[i]);
+        let (points, friction) = (block.impulses, block.friction.impulses);
+        take_off(block, detail);
+        let mut changes = ([F::zero(); 4], [F::zero(); 3]);
+        for q in 0..4 {
+            changes.0[q] = block.impulses[q] - points[q];
         }
-        v.apply(block, &block.twist_jacobian(), block.friction.twist_impulse);
-        v.scatter(block, velocities);
+        for k in 0..3 {
+            changes.1[k] = block.friction.impulses[k] - friction[k];
+        }
+        // Contacts without momentum change by 0, and so their bodies.
+        push_sides(block, &changes.0, &changes.1, pushes);
+    }
+}
+
+#[inline(always)]
+fn push_sides<F: Lanes, K: Kind>(block: &Block<F, K>, points: &[F; 4], friction: &[F; 3], rows: &mut [Row]) {
+    let mut push = Push::zero();
+    for q in 0..4 {
+        block.points[q].add(points[q], &mut push);
+    }
+    push.rub([friction[0], friction[1]], friction[2]);
+    let mut sides = Sides::gather(block, rows);
+    sides.push(block, &push);
+    sides.scatter(block, rows);
+}
+
+#[inline(always)]
+fn take_off<F: Lanes, K: Kind>(block: &mut Block<F, K>, detail: &Detail<F>) {
+    for q in 0..4 {
+        block.impulses[q] = (block.impulses[q] - detail.momentum.points[q]).max(F::zero());
+    }
+    for k in 0..3 {
+        block.friction.impulses[k] -= detail.momentum.friction[k];
+    }
+}
+
+/// Takes the momentum out of the impulses.
+pub(crate) fn take_off_momentum<K: Kind>(blocks: &mut [Block<Portable, K>], details: &[Detail<Portable>]) {
+    for (block, detail) in blocks.iter_mut().zip(details) {
+        take_off(block, detail);
     }
 }
 
 /// Adds the momentum to impulses that had none.
-pub(crate) fn add_momentum(blocks: &mut [Block<Portable>]) {
-    for block in blocks {
-        for (point, momentum) in block.points.iter_mut().zip(block.momentum.points) {
-            point.impulse = (point.impulse + momentum).max(Portable::zero());
+pub(crate) fn add_momentum<K: Kind>(blocks: &mut [Block<Portable, K>], details: &[Detail<Portable>]) {
+    for (block, detail) in blocks.iter_mut().zip(details) {
+        for q in 0..4 {
+            block.impulses[q] = (block.impulses[q] + detail.momentum.points[q]).max(Portable::zero());
         }
-        for i in 0..2 {
-            block.friction.impulses[i] += block.momentum.tangents[i];
-        }
-        block.friction.twist_impulse += block.momentum.twist;
-    }
-}
-
-/// Takes the momentum out of the impulses: it has been passed on and must not be passed on again.
-pub(crate) fn remove_momentum(blocks: &mut [Block<Portable>]) {
-    for block in blocks {
-        for (point, momentum) in block.points.iter_mut().zip(block.momentum.points) {
-            point.impulse = (point.impulse - momentum).max(Portable::zero());
-        }
-        for i in 0..2 {
-            block.friction.impulses[i] -= block.momentum.tangents[i];
-        }
-        block.friction.twist_impulse -= block.momentum.twist;
-    }
-}
-
-/// Keeps impulses from adding kinetic energy, island by island.
-///
-/// With `u` the velocities before, `p` the change by the impulses, the energy along `u + s p` is least at `s = -(p·u)/(p·p)`. Sums are in
-/// double precision and in the order of the bodies. Islands on moving kinematic bodies are left alone: these do add energy.
-pub(crate) struct EnergyGuard<'a> {
-    pub(crate) islands: &'a Islands,
-    pub(crate) dynamic: &'a [bool],
-    /// Per island root: whether a moving kinematic body touches it.
-    pub(crate) driven: &'a [bool],
-}
-
-/// What is scaled besides velocities and impulses.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Guarded {
-    /// The guess of the first substep: its momentum part shrinks with it.
-    FirstGuess,
-    /// The impulses of a later substep, carried over from the one before.
-    Guess,
-    /// The impulses after the sweeps.
-    Result,
-}
-
-impl EnergyGuard<'_> {
-    /// Scales back what `before -> velocities` added, where it added energy.
-    pub(crate) fn check(
-        &self,
-        blocks: &mut [Block<Portable>],
-        before: &[Row],
-        velocities: &mut [Row],
-        what: Guarded,
-    ) {
-        let n = self.dynamic.len();
-        let (mut work, mut square) = (vec![0.0f64; n], vec![0.0f64; n]);
-        for i in (0..n).filter(|&i| self.dynamic[i]) {
-            let (mut pu, mut pp) = (0.0f32, 0.0f32);
-            for k in 0..6 {
-                let p = velocities[i].0[k] - before[i].0[k];
-                pu += p * before[i].0[k];
-                pp += p * p;
-            }
-            let root = self.islands.root(i);
-            work[root] += f64::from(pu);
-            square[root] += f64::from(pp);
-        }
-        let mut scale = vec![1.0f32; n];
-        let mut any = false;
-        for root in 0..n {
-            let (pu, pp) = (work[root], square[root]);
-            let gains = match what {
-                Guarded::FirstGuess | Guarded::Guess => pp > 0.0 && -pu < STEP_MIN * pp,
-                Guarded::Result => 0.5 * pp + pu > GAIN_ALLOWED * pp,
-            };
-            if gains && !self.driven[root] {
-                scale[root] = (-pu / pp).clamp(0.0, 1.0) as f32;
-                any = true;
-            }
-        }
-        if any {
-            self.scale_back(&scale, before, velocities);
-            self.scale_impulses(&scale, blocks, what);
-        }
-    }
-
-    fn scale_back(&self, scale: &[f32], before: &[Row], velocities: &mut [Row]) {
-        for i in (0..self.dynamic.len()).filter(|&i| self.dynamic[i]) {
-            let s = scale[self.islands.root(i)];
-            if s < 1.0 {
-                for k in 0..6 {
-                    let u = before[i].0[k];
-                    velocities[i].0[k] = u + s * (velocities[i].0[k] - u);
-                }
-            }
-        }
-    }
-
-    /// What holds for the islands (by root) of a block's contacts; 1 in lanes without one.
-    pub(crate) fn per_lane(&self, block: &Block<Portable>, of_root: &[f32]) -> Portable {
-        let mut factor = [1.0; LANES];
-        for lane in (0..LANES).filter(|&lane| block.source[lane] != NO_CONTACT) {
-            let (a, b) = (block.first[lane] as usize, block.second[lane] as usize);
-            factor[lane] = of_root[self.islands.root(if self.dynamic[a] { a } else { b })];
-        }
-        Portable::from_array(factor)
-    }
-
-    fn scale_impulses(&self, scale: &[f32], blocks: &mut [Block<Portable>], what: Guarded) {
-        for block in blocks {
-            let factor = self.per_lane(block, scale);
-            for point in &mut block.points {
-                point.impulse = point.impulse * factor;
-            }
-            block.friction.impulses = block.friction.impulses.map(|x| x * factor);
-            block.friction.twist_impulse = block.friction.twist_impulse * factor;
-            if what == Guarded::FirstGuess {
-                block.momentum.points = block.momentum.points.map(|x| x * factor);
-                block.momentum.tangents = block.momentum.tangents.map(|x| x * factor);
-                block.momentum.twist = block.momentum.twist * factor;
-            }
+        for k in 0..3 {
+            block.friction.impulses[k] += detail.momentum.friction[k];
         }
     }
 }

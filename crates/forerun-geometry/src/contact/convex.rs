@@ -91,7 +91,7 @@ impl Placed<'_> {
 }
 
 fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
-    let small = MARGIN_PART * a.size().min(b.size());
+    let small = MARGIN_PART * a.size.min(b.size);
     let face_margin = FACE_MARGIN.min(small);
     let face = best_face(a, b, SECOND_FACE_MARGIN.min(small));
     let mut on_face = None;
@@ -132,13 +132,30 @@ fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
 }
 
 /// The face along whose normal the two are farthest apart; the first solid's within `preference`.
+///
+/// Most faces look away. How high a ball inside the other is above a face says how high the other itself can be at most: a face for which that is
+/// less than another face is known to have cannot be the best, and nobody looks for the other's lowest point over it.
 fn best_face(a: &Solid, b: &Solid, preference: f32) -> Option<BestFace> {
+    let sides = [(false, a, b), (true, b, a)];
+    let mut known = f32::NEG_INFINITY;
+    for (_, own, other) in sides {
+        let mut highest: Option<(usize, f32)> = None;
+        for (face, height) in own.heights_of(other.middle()).enumerate() {
+            if highest.is_none_or(|(_, best)| height > best) {
+                highest = Some((face, height));
+            }
+        }
+        known = highest.map_or(known, |(face, _)| known.max(height_over(own, face, other)));
+    }
+    let hopeless = known - preference - 4.0 * TIE;
     let mut best: Option<BestFace> = None;
-    for (of_second, own, other) in [(false, a, b), (true, b, a)] {
-        for face in 0..own.face_count() {
-            let (normal, offset) = own.plane(face);
-            let lowest = other.support(-normal.as_dvec3()).as_vec3();
-            let separation = normal.dot(lowest) - offset - other.radius;
+    for (of_second, own, other) in sides {
+        let inside = other.inner_radius();
+        for (face, middle) in own.heights_of(other.middle()).enumerate() {
+            if middle - inside < hopeless {
+                continue;
+            }
+            let separation = height_over(own, face, other);
             let beats = |best: BestFace| {
                 separation > best.separation + if of_second == best.of_second { TIE } else { preference }
             };
@@ -148,6 +165,13 @@ fn best_face(a: &Solid, b: &Solid, preference: f32) -> Option<BestFace> {
         }
     }
     best
+}
+
+/// How high the lowest point of `other` is above a face. Metres.
+fn height_over(own: &Solid, face: usize, other: &Solid) -> f32 {
+    let (normal, offset) = own.plane(face);
+    let lowest = other.support(-normal.as_dvec3()).as_vec3();
+    normal.dot(lowest) - offset - other.radius
 }
 
 fn on_best_face(a: &Solid, b: &Solid, best: BestFace, margin: f32) -> Option<Manifold> {

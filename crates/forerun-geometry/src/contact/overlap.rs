@@ -128,6 +128,7 @@ impl Default for Triangle {
             corners: Vec::new(),
             edges: Vec::new(),
             centre: Vec3::ZERO,
+            inner_radius: 0.0,
         })
     }
 }

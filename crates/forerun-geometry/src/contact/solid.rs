@@ -15,8 +15,12 @@ pub(super) struct Solid<'a> {
     core: Core<'a>,
     centre: Vec3,
     axes: Mat3,
+    /// The same, for the searches in double precision.
+    axes_exact: DMat3,
     /// Metres; 0 unless the shape is round all over.
     pub(super) radius: f32,
+    /// Roughly half of its smallest thickness: what small means for this shape. Metres.
+    pub(super) size: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -36,6 +40,17 @@ enum Core<'a> {
     Hull(&'a Hull),
 }
 
+impl Core<'_> {
+    fn size(&self, radius: f32) -> f32 {
+        match self {
+            Core::Segment { .. } => radius,
+            Core::Cuboid { half_extents } => half_extents.min_element(),
+            Core::Cylinder { half_height, radius } => half_height.min(*radius),
+            Core::Hull(hull) => hull.inner_radius,
+        }
+    }
+}
+
 impl<'a> Solid<'a> {
     /// A convex shape, seen from `origin`; none for others.
     pub(super) fn new(shape: &'a Shape, pose: &Pose, origin: Vec3) -> Option<Self> {
@@ -47,12 +62,18 @@ impl<'a> Solid<'a> {
             Shape::Hull(hull) => (Core::Hull(hull), 0.0),
             Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
         };
-        Some(Solid { core, centre: pose.position - origin, axes: pose.axes(), radius })
+        Some(Solid::of_core(core, pose.position - origin, pose.axes(), radius))
+    }
+
+    fn of_core(core: Core<'a>, centre: Vec3, axes: Mat3, radius: f32) -> Self {
+        let axes_exact =
+            DMat3::from_cols(axes.x_axis.as_dvec3(), axes.y_axis.as_dvec3(), axes.z_axis.as_dvec3());
+        Solid { core, centre, axes, axes_exact, radius, size: core.size(radius) }
     }
 
     /// A hull in its own frame.
     pub(super) fn of_hull(hull: &'a Hull) -> Self {
-        Solid { core: Core::Hull(hull), centre: Vec3::ZERO, axes: Mat3::IDENTITY, radius: 0.0 }
+        Solid::of_core(Core::Hull(hull), Vec3::ZERO, Mat3::IDENTITY, 0.0)
     }
 
     /// Where its frame is.
@@ -78,7 +99,7 @@ impl<'a> Solid<'a> {
     pub(super) fn as_rod(&self) -> Solid<'a> {
         match self.core {
             Core::Cylinder { half_height, radius } => {
-                Solid { core: Core::Segment { half_height }, radius, ..*self }
+                Solid { core: Core::Segment { half_height }, radius, size: radius, ..*self }
             }
             _ => Solid { ..*self },
         }
@@ -97,27 +118,18 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// Roughly half of its smallest thickness: what small means for this shape. Metres.
-    pub(super) fn size(&self) -> f32 {
+    /// A ball of this radius about the middle is inside, but for a part in a thousand. Metres.
+    pub(super) fn inner_radius(&self) -> f32 {
+        // Less than the size by what rounding may make of it.
         match self.core {
             Core::Segment { .. } => self.radius,
-            Core::Cuboid { half_extents } => half_extents.min_element(),
-            Core::Cylinder { half_height, radius } => half_height.min(radius),
-            Core::Hull(hull) => hull
-                .faces
-                .iter()
-                .fold(f32::INFINITY, |least, face| least.min(face.offset - face.normal.dot(hull.centre))),
+            _ => self.size * 0.999,
         }
     }
 
     /// The outermost point of the core in a direction (any length but 0); the first of equals.
     pub(super) fn support(&self, direction: DVec3) -> DVec3 {
-        let axes = DMat3::from_cols(
-            self.axes.x_axis.as_dvec3(),
-            self.axes.y_axis.as_dvec3(),
-            self.axes.z_axis.as_dvec3(),
-        );
-        let d = axes.transpose() * direction;
+        let d = self.axes_exact.transpose() * direction;
         let local = match self.core {
             Core::Segment { half_height } => DVec3::new(0.0, along(d.y, half_height), 0.0),
             Core::Cuboid { half_extents: h } => DVec3::new(along(d.x, h.x), along(d.y, h.y), along(d.z, h.z)),
@@ -139,7 +151,7 @@ impl<'a> Solid<'a> {
                 best
             }
         };
-        axes * local + self.centre.as_dvec3()
+        self.axes_exact * local + self.centre.as_dvec3()
     }
 
     /// How many flat faces it has.
@@ -152,9 +164,24 @@ impl<'a> Solid<'a> {
         }
     }
 
+    /// How high the middle of `other` is above each face. Metres; in this solid's own frame, so that no normal has to be turned.
+    pub(super) fn heights_of(&self, middle: Vec3) -> impl Iterator<Item = f32> + '_ {
+        let local = self.axes.transpose() * (middle - self.centre);
+        (0..self.face_count()).map(move |face| {
+            let (normal, offset) = self.local_plane(face);
+            normal.dot(local) - offset
+        })
+    }
+
     /// Outward unit normal of a face, and how far its plane is from the origin along it.
     pub(super) fn plane(&self, face: usize) -> (Vec3, f32) {
-        let (local, offset) = match self.core {
+        let (local, offset) = self.local_plane(face);
+        let normal = self.axes * local;
+        (normal, offset + normal.dot(self.centre))
+    }
+
+    fn local_plane(&self, face: usize) -> (Vec3, f32) {
+        match self.core {
             Core::Cuboid { half_extents } => {
                 let axis = face / 2;
                 let outward = [Vec3::X, Vec3::Y, Vec3::Z][axis];
@@ -164,9 +191,7 @@ impl<'a> Solid<'a> {
             Core::Hull(hull) => (hull.faces[face].normal, hull.faces[face].offset),
             Core::Cylinder { half_height, .. } => (if face == 0 { Vec3::Y } else { -Vec3::Y }, half_height),
             Core::Segment { half_height } => (Vec3::Y, half_height),
-        };
-        let normal = self.axes * local;
-        (normal, offset + normal.dot(self.centre))
+        }
     }
 
     /// A face as a reference to clip against.

@@ -29,6 +29,8 @@ pub struct Hull {
     pub edges: Vec<HullEdge>,
     /// A point well inside: the mean of the vertices. Metres.
     pub centre: Vec3,
+    /// Distance from the centre to the nearest face: a ball of this radius about it is inside. Metres.
+    pub inner_radius: f32,
 }
 
 /// A face of a hull.
@@ -167,7 +169,14 @@ fn assemble(points: &[Vec3], loops: &[Vec<u32>]) -> Option<Hull> {
     }
     let sum: DVec3 = vertices.iter().map(|v| v.as_dvec3()).sum();
     let centre = (sum / vertices.len() as f64).as_vec3();
-    Some(Hull { vertices, faces, corners, edges, centre })
+    let inner_radius = hull_inner_radius(&faces, centre);
+    Some(Hull { vertices, faces, corners, edges, centre, inner_radius })
+}
+
+/// Distance from a point inside a hull to the nearest of its faces; infinite where there are none. Metres.
+#[must_use]
+pub fn hull_inner_radius(faces: &[HullFace], centre: Vec3) -> f32 {
+    faces.iter().fold(f32::INFINITY, |least, face| least.min(face.offset - face.normal.dot(centre)))
 }
 
 /// Unit normal (Newell's) and offset of a polygon; no corner is in front of the plane.

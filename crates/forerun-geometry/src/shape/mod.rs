@@ -19,7 +19,7 @@ mod reach;
 mod triangle_tree;
 
 pub use compound::Compound;
-pub use hull::{Hull, HullEdge, HullFace};
+pub use hull::{Hull, HullEdge, HullFace, hull_inner_radius};
 pub use mesh::{Mesh, MeshError, MeshRepairs};
 pub(crate) use mesh_ray::FirstHits;
 

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use forerun_geometry::contact::contact_manifolds;
-use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Hull, HullEdge, HullFace, Sphere};
+use forerun_geometry::shape::{
+    Capsule, Cuboid, Cylinder, Hull, HullEdge, HullFace, Sphere, hull_inner_radius,
+};
 use forerun_geometry::{Manifold, Motion, Placed, Pose, Quat, Shape, Vec3};
 
 pub(crate) fn sphere(radius: f32) -> Shape {
@@ -25,8 +27,14 @@ pub(crate) fn cuboid(x: f32, y: f32, z: f32) -> Shape {
 /// The hull of a few points in convex position, by trying all planes through three of them.
 pub(crate) fn hull(points: &[Vec3]) -> Shape {
     let centre = points.iter().fold(Vec3::ZERO, |sum, point| sum + *point) / points.len() as f32;
-    let mut made =
-        Hull { vertices: points.to_vec(), faces: Vec::new(), corners: Vec::new(), edges: Vec::new(), centre };
+    let mut made = Hull {
+        vertices: points.to_vec(),
+        faces: Vec::new(),
+        corners: Vec::new(),
+        edges: Vec::new(),
+        centre,
+        inner_radius: 0.0,
+    };
     let count = points.len();
     for i in 0..count {
         for j in i + 1..count {
@@ -36,6 +44,7 @@ pub(crate) fn hull(points: &[Vec3]) -> Shape {
         }
     }
     add_edges(&mut made);
+    made.inner_radius = hull_inner_radius(&made.faces, made.centre);
     Shape::Hull(Arc::new(made))
 }
 

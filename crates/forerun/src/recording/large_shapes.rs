@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use forerun_geometry::shape::{
     Capsule, Compound, Cuboid, Cylinder, Hull, HullEdge, HullFace, Mesh, MeshRepairs, Sphere,
+    hull_inner_radius,
 };
 use forerun_geometry::{Pose, Quat, Shape, Vec3};
 use serde::{Deserialize, Serialize};
@@ -171,12 +172,15 @@ pub(super) fn large_shape_of(value: LargeShape, stored: &[Shape]) -> Result<Shap
                 first,
                 count,
             };
+            let faces: Vec<HullFace> = faces.into_iter().map(face).collect();
+            let centre = Vec3::from_array(centre);
             let hull = Hull {
                 vertices: vertices.into_iter().map(Vec3::from_array).collect(),
-                faces: faces.into_iter().map(face).collect(),
+                inner_radius: hull_inner_radius(&faces, centre),
+                faces,
                 corners,
                 edges: edges.into_iter().map(|(vertices, faces)| HullEdge { vertices, faces }).collect(),
-                centre: Vec3::from_array(centre),
+                centre,
             };
             check_hull(&hull).map_err(|what| format!("a hull {what}"))?;
             Ok(Shape::Hull(Arc::new(hull)))

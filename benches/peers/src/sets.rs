@@ -1,0 +1,49 @@
+//! Sets: scenes that stand for all, each with how many frames it takes to tell engines apart, and what we want to reach.
+
+/// The word for all scenes of the set.
+pub(crate) const ALL: &str = "all";
+
+/// A scene of the set.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    pub(crate) scene: &'static str,
+    /// Few enough that the whole set takes about ten minutes on two threads with three rounds.
+    pub(crate) frames: u32,
+    /// The part of the best other engine's time that we want to need on one thread; none where we have set none.
+    pub(crate) goal: Option<f64>,
+}
+
+const fn entry(scene: &'static str, frames: u32, goal: Option<f64>) -> Entry {
+    Entry { scene, frames, goal }
+}
+
+/// Small and large, one island and many, boxes and mixed shapes, touching at the start and falling.
+pub(crate) const SCENES: [Entry; 9] = [
+    entry("dominoes", 300, Some(0.6)),
+    entry("dominoes:10000", 40, Some(0.5)),
+    entry("pyramid", 200, Some(0.8)),
+    entry("large_pyramid", 60, Some(0.5)),
+    entry("many_pyramids", 40, None),
+    entry("islands", 60, Some(0.5)),
+    entry("rain", 200, Some(0.7)),
+    entry("rain:5000", 100, Some(0.7)),
+    entry("convex_pile", 200, None),
+];
+
+/// What we want to reach on a scene.
+pub(crate) fn goal(scene: &str) -> Option<f64> {
+    SCENES.iter().find(|entry| entry.scene == scene)?.goal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_of_the_set_exists() {
+        for entry in SCENES {
+            assert!(forerun::Scene::open(entry.scene).is_ok(), "{}", entry.scene);
+        }
+        assert_eq!((goal("islands"), goal("stack")), (Some(0.5), None));
+    }
+}

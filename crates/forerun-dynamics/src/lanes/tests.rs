@@ -1,0 +1,64 @@
+use super::*;
+
+/// A little of everything, on awkward numbers.
+#[inline(always)]
+fn mix<F: Lanes>(a: [f32; LANES], b: [f32; LANES]) -> [[f32; LANES]; 6] {
+    let (x, y) = (F::from_array(a), F::from_array(b));
+    let rows: Vec<Row> = (0..9).map(|i| Row(std::array::from_fn(|k| a[k] + i as f32 * b[k]))).collect();
+    let g = F::gather(&rows, &[8, 3, 1, 0, 2, 7, 5, 4]);
+    let mut out = rows.clone();
+    F::scatter(&mut out, &[0, 1, 2, 3, 4, 5, 6, 7], [g[5], g[4], g[3], g[2], g[1], g[0]]);
+    [
+        (x * y + x / y - (x * x + y * y).sqrt()).to_array(),
+        x.lt(y).select(x.max(y), -x.abs().min(y)).to_array(),
+        (x.le(y) & y.gt(F::zero()) | x.lt(F::splat(-2.0))).select(g[6], g[7]).to_array(),
+        g[2].to_array(),
+        out[3].0,
+        out[6].0,
+    ]
+}
+
+#[target_feature(enable = "avx2")]
+fn with_avx2(a: [f32; LANES], b: [f32; LANES]) -> [[f32; LANES]; 6] {
+    mix::<Avx2>(a, b)
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq")]
+fn with_avx512(a: [f32; LANES], b: [f32; LANES]) -> [[f32; LANES]; 6] {
+    mix::<Avx2>(a, b)
+}
+
+#[test]
+fn every_instruction_set_gives_the_bits_of_plain_arrays() {
+    let a = [1.0, -0.0, 3.7e-39, -5.5, 1e30, f32::MIN_POSITIVE, -2.25, 0.1];
+    let b = [3.0, 0.0, -7.1, -5.5, 1e-30, f32::NAN, 0.7, -1e20];
+    let bits = |x: [[f32; LANES]; 6]| x.map(|r| r.map(|v| if v.is_nan() { 0 } else { v.to_bits() }));
+    for turn in 0..LANES {
+        let mut c = b;
+        c.rotate_left(turn);
+        for (a, b) in [(a, c), (c, a)] {
+            let expected = bits(mix::<Portable>(a, b));
+            assert_eq!(bits(mix::<Sse2>(a, b)), expected);
+            // SAFETY: the processor has what is called for.
+            #[allow(unsafe_code, reason = "calls functions that need processor features, checked first")]
+            unsafe {
+                if InstructionSet::Avx2.is_available() {
+                    assert_eq!(bits(with_avx2(a, b)), expected);
+                }
+                if InstructionSet::Avx512.is_available() {
+                    assert_eq!(bits(with_avx512(a, b)), expected);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_process_uses_what_it_is_limited_to() {
+    for most in InstructionSet::ALL {
+        let chosen = limit_to(most);
+        assert_eq!(chosen, most.min(InstructionSet::fastest_available()));
+        assert!(chosen.is_available());
+    }
+    assert_eq!(in_use(), InstructionSet::fastest_available());
+}
