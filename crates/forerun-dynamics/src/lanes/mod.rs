@@ -59,8 +59,8 @@ pub(crate) unsafe trait Lanes:
     /// Rows of eight bodies, turned so that each number of the record is one value.
     fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES];
 
-    /// Writes six numbers of eight bodies. Lanes that share an index must hold equal values.
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]);
+    /// Writes the rows of eight bodies. Lanes that share an index must hold equal values.
+    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; LANES]);
 
     #[inline(always)]
     fn zero() -> Self {
@@ -214,7 +214,26 @@ pub(crate) fn gather_twist<F: Lanes>(rows: &[Row], index: &[u32; LANES]) -> Twis
 #[inline(always)]
 pub(crate) fn scatter_twist<F: Lanes>(rows: &mut [Row], index: &[u32; LANES], twist: &Twist8<F>) {
     let (l, a) = (twist.linear, twist.angular);
-    F::scatter(rows, index, [l.x, l.y, l.z, a.x, a.y, a.z]);
+    F::scatter(rows, index, [l.x, l.y, l.z, a.x, a.y, a.z, F::zero(), F::zero()]);
+}
+
+/// Asks for the memory of what will be read soon.
+#[inline(always)]
+pub(crate) fn prefetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let start: *const i8 = std::ptr::from_ref(value).cast();
+        for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>() - 1]) {
+            // SAFETY: it reads nothing, and the address is inside of the value.
+            #[allow(unsafe_code, reason = "see above")]
+            unsafe {
+                _mm_prefetch::<_MM_HINT_T0>(start.add(byte));
+            }
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = value;
 }
 
 /// Records that are made of eight numbers in whatever form, and of plain integers.

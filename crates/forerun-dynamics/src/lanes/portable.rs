@@ -78,10 +78,9 @@ unsafe impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
+    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; LANES]) {
         for (lane, &i) in index.iter().enumerate() {
-            let [a, b, c, d, e, f] = values.map(|v| v.0[lane]);
-            rows[i as usize].0 = [a, b, c, d, e, f, 0.0, 0.0];
+            rows[i as usize].0 = values.map(|v| v.0[lane]);
         }
     }
 }

@@ -97,12 +97,11 @@ unsafe impl Lanes for Sse2 {
     }
 
     #[inline(always)]
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
-        let [a, b, c, d, e, f] = values;
-        let zero = unsafe { _mm_setzero_ps() };
+    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; LANES]) {
+        let [a, b, c, d, e, f, g, h] = values;
         let quarters = [
-            (transpose([a.0, b.0, c.0, d.0]), transpose([e.0, f.0, zero, zero])),
-            (transpose([a.1, b.1, c.1, d.1]), transpose([e.1, f.1, zero, zero])),
+            (transpose([a.0, b.0, c.0, d.0]), transpose([e.0, f.0, g.0, h.0])),
+            (transpose([a.1, b.1, c.1, d.1]), transpose([e.1, f.1, g.1, h.1])),
         ];
         for half in 0..2 {
             for lane in 0..4 {

@@ -24,6 +24,8 @@ pub(crate) struct Moving<'a> {
     pub(crate) substep_seconds: f32,
     /// How many substeps a frame has.
     pub(crate) substeps: f32,
+    /// The least separation that [`relax`](super::sweep::relax) has met. Metres.
+    pub(crate) least_gap: &'a mut f32,
     /// Where bounces are added up; empty where nobody asks.
     pub(crate) bounced: &'a mut [[f32; 4]],
 }

@@ -17,6 +17,7 @@ mod load;
 mod manifolds;
 mod overlap;
 mod points;
+mod poses;
 mod positions;
 mod prepare;
 mod pressure;

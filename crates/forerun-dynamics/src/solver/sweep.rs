@@ -48,12 +48,14 @@ fn relax_lanes<F: Lanes, K: Kind>(
 ) {
     let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
     let per_second = F::splat(1.0 / moving.substep_seconds);
+    let mut least = F::splat(f32::MAX);
     for (block, detail) in blocks.iter_mut().zip(recast::<F, DetailsOf>(details)) {
         let mut v = Sides::gather(block, moving.velocities);
         let moved = Sides::gather(block, moving.displacements).relative(block);
         for q in 0..4 {
             let gap = detail.separation[q] + block.points[q].speed(&moved);
             block.allowed[q] = gap.max(F::zero()) * per_second;
+            least = block.is_point(q).select(gap, least).min(least);
         }
         let mut allowed = block.allowed;
         if bounces {
@@ -61,6 +63,9 @@ fn relax_lanes<F: Lanes, K: Kind>(
         }
         solve(block, &mut v, &allowed);
         v.scatter(block, moving.velocities);
+    }
+    for gap in least.to_array() {
+        *moving.least_gap = moving.least_gap.min(gap);
     }
 }
 
