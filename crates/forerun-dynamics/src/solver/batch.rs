@@ -6,20 +6,22 @@ use forerun_geometry::{Manifold, Shape, Vec3};
 
 use super::arrange::{Arranger, Order};
 use super::bodies::Bodies;
-use super::collisions::Moving;
+use super::collisions::{Ahead, Moving};
 use super::contact_graph::ContactGraph;
 use super::energy_guard::{EnergyGuard, Guarded, Guarding};
 use super::impulses::ImpulseSums;
 use super::islands::Islands;
 use super::load::{LoadPass, Loads};
 use super::manifolds::Source;
-use super::positions::moved;
+use super::positions::integrate_positions;
 use super::prepare::{Common, prepare};
-use super::rest::{Ending, Resting};
-use super::rows::{OnlyHard, Rows};
+use super::rest::{Ending, RestScratch, Resting};
+use super::rows::Rows;
 use super::standing::StandingPass;
 use super::substep::{displace, fall, note_pushes};
+use super::team::Team;
 use super::velocities::integrate_velocities;
+use crate::lanes::{Row, cells};
 use crate::narrow_phase::Contact;
 use crate::scratch::{emptied, fill};
 use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
@@ -30,6 +32,12 @@ const HARD_PART: f64 = 0.1;
 /// So many more passes push the overlap out of hard islands. Of 1000 bodies poured into a pit the worst two overlapped by 103 mm without them
 /// and by 10 mm with them, at a cost of 4 %.
 const HARD_PUSHES: usize = 2;
+
+/// Nobody asks for overlaps that grow by less. Metres.
+const SHALLOW_M: f32 = 0.001;
+
+/// Threads that work at one island, at most.
+const SHARES_MAX: usize = 16;
 
 /// A contact of a batch: who touches, and where that is written.
 #[derive(Clone, Copy, Debug)]
@@ -75,17 +83,27 @@ pub(crate) struct Batch<'a> {
     /// By member: the state at the end.
     pub(crate) next: Vec<BodyState>,
     bodies: Bodies,
+    /// The least separation of any point after the last substep. Metres.
+    least_gap: f32,
     dynamic: Vec<bool>,
     graph: ContactGraph,
     loads: Loads,
     rows: Rows,
     arranger: Arranger,
     guard: EnergyGuard,
-    spins: Vec<Vec3>,
     endings: Vec<Ending>,
+    rest: RestScratch,
     bounces: bool,
     /// By island: whether a moving kinematic body touches it.
     driven: Vec<bool>,
+    /// By island: the weight, and what of it the load pass fails to place.
+    weights: Vec<[f64; 2]>,
+    /// By island: see [`Batch::classify`].
+    classes: Vec<u8>,
+    /// By class: the contacts.
+    chosen: [Vec<u32>; 4],
+    /// By contact: by how much the solver expects it to lie deeper at the end of the frame, where that may be cut finer. Metres.
+    pub(crate) overlap_growth: Vec<f32>,
 }
 
 impl<'a> Batch<'a> {
@@ -112,16 +130,21 @@ impl<'a> Batch<'a> {
             impulses: self.impulses,
             next: self.next,
             bodies: self.bodies,
+            least_gap: 0.0,
             dynamic: self.dynamic,
             graph: self.graph,
             loads: self.loads,
             rows: self.rows,
             arranger: self.arranger,
             guard: self.guard,
-            spins: self.spins,
             endings: self.endings,
+            rest: self.rest,
             bounces: false,
             driven: self.driven,
+            weights: self.weights,
+            classes: self.classes,
+            chosen: self.chosen,
+            overlap_growth: self.overlap_growth,
         }
     }
 
@@ -141,9 +164,7 @@ impl<'a> Batch<'a> {
 
     /// Stage 2: springs, gyroscopic term, accelerations.
     pub(crate) fn integrate_velocities(&mut self) {
-        self.bodies = Bodies::gather(&self.members, &self.environment);
-        self.spins =
-            integrate_velocities(&self.members, &mut self.bodies, self.environment.settings.frame_seconds);
+        integrate_velocities(&mut self.bodies, &self.members, &self.environment);
     }
 
     /// Stage 3: levels, load, rows.
@@ -174,10 +195,11 @@ impl<'a> Batch<'a> {
 
     /// Finds a lane for every contact: flat islands apart from uneven ones, easy ones before hard ones.
     fn arrange(&mut self) {
-        let class = self.classes();
-        let mut chosen: [Vec<u32>; 4] = Default::default();
+        self.classify();
+        let mut chosen = std::mem::take(&mut self.chosen);
+        chosen.iter_mut().for_each(Vec::clear);
         for (k, ends) in self.ends.iter().enumerate() {
-            chosen[class[self.island_of(ends)]].push(k as u32);
+            chosen[usize::from(self.classes[self.island_of(ends)])].push(k as u32);
         }
         let order = Order { graph: &self.graph, contacts: &self.ends, yields: &self.dynamic };
         let (arranger, Rows { flat, uneven }) = (&mut self.arranger, &mut self.rows);
@@ -193,29 +215,33 @@ impl<'a> Batch<'a> {
         uneven.easy = uneven.count;
         arranger.add(uneven_hard, &order, uneven);
         uneven.finish();
+        let threads = rayon::current_num_threads().min(SHARES_MAX);
+        flat.share_out(threads, self.members.len());
+        uneven.share_out(threads, self.members.len());
+        self.bodies.add_unread(self.rows.share_count());
+        self.chosen = chosen;
     }
 
-    /// By island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps; 2 more where some
-    /// manifold has points that push different ways, which only those of meshes do.
-    fn classes(&self) -> Vec<usize> {
-        let mut sums = vec![(0.0f64, 0.0f64); self.islands.count() + 1];
+    /// Finds the class of each island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more
+    /// sweeps; 2 more where some manifold has points that push different ways, which only those of meshes do.
+    fn classify(&mut self) {
+        fill(&mut self.weights, self.islands.count() + 1, [0.0; 2]);
         for (i, strain) in self.loads.strain.iter().enumerate() {
-            let sum = &mut sums[self.islands.root(i)];
-            sum.0 += f64::from(strain.weight);
-            sum.1 += f64::from(strain.lost);
+            let [weight, lost] = &mut self.weights[self.islands.root(i)];
+            *weight += f64::from(strain.weight);
+            *lost += f64::from(strain.lost);
         }
-        let hard = |(weight, lost)| lost > HARD_PART * weight;
-        let mut class: Vec<usize> = sums.into_iter().map(|sums| usize::from(hard(sums))).collect();
+        self.classes.clear();
+        self.classes.extend(self.weights.iter().map(|[weight, lost]| u8::from(*lost > HARD_PART * weight)));
         if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
             for (k, ends) in self.ends.iter().enumerate() {
-                let manifold = self.contacts().manifold(k);
-                let points = &manifold.points[..manifold.count as usize];
+                let points = self.contacts().manifold(k).points();
                 if points.iter().any(|p| p.normal != points[0].normal) {
-                    class[self.island_of(ends)] |= 2;
+                    let island = self.island_of(ends);
+                    self.classes[island] |= 2;
                 }
             }
         }
-        class
     }
 
     /// The number of the island that a contact belongs to.
@@ -230,6 +256,7 @@ impl<'a> Batch<'a> {
         let h = self.substep_seconds();
         let at = Guarding { islands: &self.islands, driven: &self.driven };
         let (rows, bodies, impulses) = (&mut self.rows, &mut self.bodies, &mut self.impulses);
+        let least_gap = &mut self.least_gap;
         let mut standing = StandingPass {
             guard: &mut self.guard,
             at,
@@ -239,31 +266,39 @@ impl<'a> Batch<'a> {
         let Rows { flat, uneven } = rows;
         standing.run(&mut flat.blocks[flat.easy..], &mut flat.details[flat.easy..]);
         standing.run(&mut uneven.blocks[uneven.easy..], &mut uneven.details[uneven.easy..]);
-        for substep in 0..settings.substeps {
-            if self.bounces {
-                rows.resolve_collisions(&mut moving(bodies, &settings, impulses));
+        let (guard, bounces) = (&mut self.guard, self.bounces);
+        Team::gather(rows.share_count(), |team| {
+            for substep in 0..settings.substeps {
+                if bounces {
+                    let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
+                    let ahead = ahead(displacements, kicks, &settings, bounces);
+                    let velocities = cells(velocities);
+                    rows.resolve_collisions(&mut Moving { velocities, ahead, bounced: &mut *impulses });
+                }
+                if substep == 1 {
+                    rows.remove_momentum(&mut bodies.pushes);
+                }
+                fall(bodies);
+                if substep == 0 {
+                    rows.apply_impulses(&mut bodies.velocities, team);
+                }
+                let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
+                keep_energy(guard, at, rows, bodies, guess);
+                for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
+                    rows.sweep(&mut bodies.velocities, team);
+                }
+                keep_energy(guard, at, rows, bodies, Guarded::Result);
+                displace(bodies, h);
+                let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
+                let ahead = ahead(displacements, kicks, &settings, bounces);
+                *least_gap = rows.relax(velocities, &ahead, team);
+                note_pushes(bodies);
+                rows.add_impulses(impulses);
+                if settings.shock_propagation == ShockPropagation::Classic {
+                    rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
+                }
             }
-            if substep == 1 {
-                rows.remove_momentum(&mut bodies.pushes);
-            }
-            fall(bodies);
-            if substep == 0 {
-                rows.apply_impulses(&mut bodies.velocities);
-            }
-            let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
-            keep_energy(&mut self.guard, at, rows, bodies, guess);
-            for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
-                rows.sweep(&mut bodies.velocities);
-            }
-            keep_energy(&mut self.guard, at, rows, bodies, Guarded::Result);
-            displace(bodies, h);
-            rows.relax(&mut moving(bodies, &settings, &mut []), self.bounces);
-            note_pushes(bodies);
-            rows.add_impulses(impulses);
-            if settings.shock_propagation == ShockPropagation::Classic {
-                rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
-            }
-        }
+        });
     }
 
     /// Finds the islands that a moving kinematic body touches.
@@ -285,11 +320,19 @@ impl<'a> Batch<'a> {
     /// Stage 5: remaining overlap is pushed out, level by level.
     pub(crate) fn propagate_shock(&mut self) {
         let settings = self.environment.settings;
-        for _ in 0..self.pushes() {
-            self.rows.propagate_shock(OnlyHard::No, &mut self.bodies.displacements, &settings);
+        if self.least_gap + settings.overlap_allowed_m >= 0.0 {
+            // Nobody is pushed, and so nobody comes to overlap.
+            return;
         }
+        let pushes = self.pushes();
+        let (rows, displacements) = (&mut self.rows, &mut self.bodies.displacements);
+        Team::gather(rows.share_count(), |team| {
+            for _ in 0..pushes {
+                rows.propagate_shock(displacements, &settings, team);
+            }
+        });
         for _ in 0..HARD_PUSHES {
-            self.rows.propagate_shock(OnlyHard::Yes, &mut self.bodies.displacements, &settings);
+            rows.propagate_hard_shock(displacements, &settings);
         }
     }
 
@@ -309,19 +352,21 @@ impl<'a> Batch<'a> {
             driven: &self.driven,
             environment,
         };
-        at.find_endings(&self.spins, &mut self.endings);
-        let bodies = &self.bodies;
-        let moves = |(i, m): (usize, &Member)| moved(m, bodies, i, &self.endings[i], environment);
-        self.next.clear();
-        self.next.extend(members.iter().enumerate().map(moves));
-        at.settle(&mut self.next, &self.endings);
+        at.find_endings(&mut self.endings);
+        integrate_positions(members, &self.bodies, environment, &mut self.next);
+        at.settle(&mut self.next, &self.endings, &mut self.rest);
+        if environment.settings.slices_max > 1 {
+            self.find_overlap_growth();
+        }
     }
 
-    /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
-    pub(crate) fn overlap_growth(&self) -> Vec<f32> {
-        let mut growth = vec![0.0; self.ends.len()];
-        self.rows.overlap_growth(&self.bodies.displacements, &mut growth);
-        growth
+    /// For each contact: by how much the solver expects it to lie deeper at the end of the frame, or 0 if all of them by less than [`SHALLOW_M`].
+    fn find_overlap_growth(&mut self) {
+        fill(&mut self.overlap_growth, self.ends.len(), 0.0);
+        let least = self.least_gap;
+        if least < -SHALLOW_M || least + self.environment.settings.overlap_allowed_m < 0.0 {
+            self.rows.overlap_growth(&self.bodies.displacements, &mut self.overlap_growth);
+        }
     }
 }
 
@@ -330,15 +375,19 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
     matches!(shape, Shape::Mesh(_))
 }
 
-/// What the kernels that look ahead need of the bodies.
-fn moving<'a>(bodies: &'a mut Bodies, settings: &StepSettings, bounced: &'a mut [[f32; 4]]) -> Moving<'a> {
-    Moving {
-        velocities: &mut bodies.velocities,
-        displacements: &bodies.displacements,
-        kicks: &bodies.kicks,
+/// What the kernels that look ahead need.
+fn ahead<'a>(
+    displacements: &'a [Row],
+    kicks: &'a [Row],
+    settings: &StepSettings,
+    bounces: bool,
+) -> Ahead<'a> {
+    Ahead {
+        displacements,
+        kicks,
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
-        bounced,
+        bounces,
     }
 }
 
