@@ -68,6 +68,7 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("rolling_plate", "at 60°: the same against the target, m²/s²", 1.86e-06, ROUNDS_PLATE),
     miss("rolling_down", "mesh sphere, 4.5°, 1/240: fall off, part", 0.1799, FACETS),
     miss("rolling_down", "mesh sphere, 9°, 1/240: fall off, part", 0.1537, FACETS),
+    miss("rolling_down", "mesh sphere, 9°, 1/240: slip, part", 0.02132, FACETS),
     miss("rolling_down", "mesh sphere, 18°, 1/240: fall off, part", 0.09998, FACETS),
     miss("rolling_down", "mesh sphere, 18°, 1/240: slip, part", 0.04347, FACETS),
     miss("friction_directions", "(b) drift of the centre, m", 0.08354, FROZEN_ARMS),
