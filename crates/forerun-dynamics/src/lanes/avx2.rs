@@ -6,6 +6,7 @@
 #![allow(unsafe_code, reason = "one of the rooms that use processor intrinsics")]
 
 use std::arch::x86_64::*;
+use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{LANES, LaneMask, Lanes, Row};
@@ -73,26 +74,26 @@ unsafe impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
+    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
         assert_below(index, rows.len());
         let mut r = [unsafe { _mm256_setzero_ps() }; LANES];
         for lane in 0..LANES {
             // SAFETY: the index was found to be below the length.
-            r[lane] = unsafe { _mm256_load_ps(rows.get_unchecked(index[lane] as usize).0.as_ptr()) };
+            r[lane] = unsafe { _mm256_load_ps(rows.get_unchecked(index[lane] as usize).as_ptr().cast()) };
         }
         let [a, b, c, d, e, f, g, h] = transpose(r);
         [Avx2(a), Avx2(b), Avx2(c), Avx2(d), Avx2(e), Avx2(f), Avx2(g), Avx2(h)]
     }
 
     #[inline(always)]
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; LANES]) {
+    fn scatter(rows: &[Cell<Row>], index: &[u32; LANES], values: [Self; LANES]) {
         assert_below(index, rows.len());
         let [a, b, c, d, e, f, g, h] = values;
         let columns = transpose([a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0]);
         for lane in 0..LANES {
             // SAFETY: the index was found to be below the length.
             unsafe {
-                _mm256_store_ps(rows.get_unchecked_mut(index[lane] as usize).0.as_mut_ptr(), columns[lane])
+                _mm256_store_ps(rows.get_unchecked(index[lane] as usize).as_ptr().cast(), columns[lane])
             };
         }
     }

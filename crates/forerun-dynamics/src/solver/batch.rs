@@ -6,7 +6,7 @@ use forerun_geometry::{Manifold, Shape, Vec3};
 
 use super::arrange::{Arranger, Order};
 use super::bodies::Bodies;
-use super::collisions::Moving;
+use super::collisions::{Ahead, Moving};
 use super::contact_graph::ContactGraph;
 use super::energy_guard::{EnergyGuard, Guarded, Guarding};
 use super::impulses::ImpulseSums;
@@ -16,10 +16,12 @@ use super::manifolds::Source;
 use super::positions::integrate_positions;
 use super::prepare::{Common, prepare};
 use super::rest::{Ending, RestScratch, Resting};
-use super::rows::{OnlyHard, Rows};
+use super::rows::Rows;
 use super::standing::StandingPass;
 use super::substep::{displace, fall, note_pushes};
+use super::team::Team;
 use super::velocities::integrate_velocities;
+use crate::lanes::{Row, cells};
 use crate::narrow_phase::Contact;
 use crate::scratch::{emptied, fill};
 use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
@@ -33,6 +35,9 @@ const HARD_PUSHES: usize = 2;
 
 /// Nobody asks for overlaps that grow by less. Metres.
 const SHALLOW_M: f32 = 0.001;
+
+/// Threads that work at one island, at most.
+const SHARES_MAX: usize = 16;
 
 /// A contact of a batch: who touches, and where that is written.
 #[derive(Clone, Copy, Debug)]
@@ -210,6 +215,10 @@ impl<'a> Batch<'a> {
         uneven.easy = uneven.count;
         arranger.add(uneven_hard, &order, uneven);
         uneven.finish();
+        let threads = rayon::current_num_threads().min(SHARES_MAX);
+        flat.share_out(threads, self.members.len());
+        uneven.share_out(threads, self.members.len());
+        self.bodies.add_unread(self.rows.share_count());
         self.chosen = chosen;
     }
 
@@ -257,32 +266,39 @@ impl<'a> Batch<'a> {
         let Rows { flat, uneven } = rows;
         standing.run(&mut flat.blocks[flat.easy..], &mut flat.details[flat.easy..]);
         standing.run(&mut uneven.blocks[uneven.easy..], &mut uneven.details[uneven.easy..]);
-        for substep in 0..settings.substeps {
-            if self.bounces {
-                rows.resolve_collisions(&mut moving(bodies, &settings, (least_gap, impulses)));
+        let (guard, bounces) = (&mut self.guard, self.bounces);
+        Team::gather(rows.share_count(), |team| {
+            for substep in 0..settings.substeps {
+                if bounces {
+                    let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
+                    let ahead = ahead(displacements, kicks, &settings, bounces);
+                    let velocities = cells(velocities);
+                    rows.resolve_collisions(&mut Moving { velocities, ahead, bounced: &mut *impulses });
+                }
+                if substep == 1 {
+                    rows.remove_momentum(&mut bodies.pushes);
+                }
+                fall(bodies);
+                if substep == 0 {
+                    rows.apply_impulses(&mut bodies.velocities, team);
+                }
+                let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
+                keep_energy(guard, at, rows, bodies, guess);
+                for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
+                    rows.sweep(&mut bodies.velocities, team);
+                }
+                keep_energy(guard, at, rows, bodies, Guarded::Result);
+                displace(bodies, h);
+                let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
+                let ahead = ahead(displacements, kicks, &settings, bounces);
+                *least_gap = rows.relax(velocities, &ahead, team);
+                note_pushes(bodies);
+                rows.add_impulses(impulses);
+                if settings.shock_propagation == ShockPropagation::Classic {
+                    rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
+                }
             }
-            if substep == 1 {
-                rows.remove_momentum(&mut bodies.pushes);
-            }
-            fall(bodies);
-            if substep == 0 {
-                rows.apply_impulses(&mut bodies.velocities);
-            }
-            let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
-            keep_energy(&mut self.guard, at, rows, bodies, guess);
-            for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
-                rows.sweep(&mut bodies.velocities);
-            }
-            keep_energy(&mut self.guard, at, rows, bodies, Guarded::Result);
-            displace(bodies, h);
-            *least_gap = f32::MAX;
-            rows.relax(&mut moving(bodies, &settings, (least_gap, &mut [])), self.bounces);
-            note_pushes(bodies);
-            rows.add_impulses(impulses);
-            if settings.shock_propagation == ShockPropagation::Classic {
-                rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
-            }
-        }
+        });
     }
 
     /// Finds the islands that a moving kinematic body touches.
@@ -308,11 +324,15 @@ impl<'a> Batch<'a> {
             // Nobody is pushed, and so nobody comes to overlap.
             return;
         }
-        for _ in 0..self.pushes() {
-            self.rows.propagate_shock(OnlyHard::No, &mut self.bodies.displacements, &settings);
-        }
+        let pushes = self.pushes();
+        let (rows, displacements) = (&mut self.rows, &mut self.bodies.displacements);
+        Team::gather(rows.share_count(), |team| {
+            for _ in 0..pushes {
+                rows.propagate_shock(displacements, &settings, team);
+            }
+        });
         for _ in 0..HARD_PUSHES {
-            self.rows.propagate_shock(OnlyHard::Yes, &mut self.bodies.displacements, &settings);
+            rows.propagate_hard_shock(displacements, &settings);
         }
     }
 
@@ -355,20 +375,19 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
     matches!(shape, Shape::Mesh(_))
 }
 
-/// What the kernels that look ahead need of the bodies.
-fn moving<'a>(
-    bodies: &'a mut Bodies,
+/// What the kernels that look ahead need.
+fn ahead<'a>(
+    displacements: &'a [Row],
+    kicks: &'a [Row],
     settings: &StepSettings,
-    (least_gap, bounced): (&'a mut f32, &'a mut [[f32; 4]]),
-) -> Moving<'a> {
-    Moving {
-        velocities: &mut bodies.velocities,
-        displacements: &bodies.displacements,
-        kicks: &bodies.kicks,
+    bounces: bool,
+) -> Ahead<'a> {
+    Ahead {
+        displacements,
+        kicks,
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
-        least_gap,
-        bounced,
+        bounces,
     }
 }
 

@@ -4,6 +4,7 @@
 //! same body, nor do the blocks of a run. The colour of a contact depends on its island alone; which lane it lands in does not change its result.
 
 use super::points::{Kind, Point, Side};
+use super::shares::Shares;
 use crate::lanes::{LANES, LaneMask, Lanes, Portable, Record, V8};
 
 /// Padding: a lane without a contact.
@@ -180,6 +181,8 @@ pub(crate) struct Arranged<K: Kind> {
     pub(crate) runs: Vec<u32>,
     /// How many blocks have been added; the others are memory to be used again.
     pub(crate) count: usize,
+    /// Which thread does which blocks; none where one does them all.
+    pub(crate) shares: Shares,
 }
 
 impl<K: Kind> Arranged<K> {
@@ -187,6 +190,7 @@ impl<K: Kind> Arranged<K> {
     pub(crate) fn clear(&mut self) {
         (self.easy, self.count) = (0, 0);
         self.runs.clear();
+        self.shares.clear();
     }
 
     /// Makes room for so many more blocks at once.

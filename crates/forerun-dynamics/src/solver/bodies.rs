@@ -56,6 +56,18 @@ impl Bodies {
     }
 }
 
+impl Bodies {
+    /// Makes room for so many rows that are written and not read, where there was one.
+    pub(crate) fn add_unread(&mut self, count: usize) {
+        let rows = self.kicks.len() - 1 + count;
+        for list in
+            [&mut self.velocities, &mut self.displacements, &mut self.kicks, &mut self.free, &mut self.pushes]
+        {
+            list.resize(rows, Row::default());
+        }
+    }
+}
+
 /// The indices of eight rows that follow each other.
 #[inline(always)]
 pub(crate) fn eight_from(start: usize) -> [u32; LANES] {

@@ -24,6 +24,8 @@ mod pressure;
 mod rest;
 mod rotation;
 mod rows;
+mod shared;
+mod shares;
 mod shock;
 mod sides;
 mod spring;

@@ -7,7 +7,7 @@ use super::flight::fly;
 use super::poses::{Q8, from_axes, is_large, to_axes};
 use super::rotation::turned;
 use super::spring::pull;
-use crate::lanes::{LANES, LaneMask, Lanes, V8, dispatched, gather_twist};
+use crate::lanes::{LANES, LaneMask, Lanes, Twist8, V8, dispatched};
 use crate::{BodyState, Environment, Member};
 
 dispatched! {
@@ -56,8 +56,8 @@ impl<F: Lanes> Moved<F> {
         let [ax, ay, az, bx, by, bz, ..] = F::gather(&bodies.axes, &rows);
         let (a, b) = (V8 { x: ax, y: ay, z: az }, V8 { x: bx, y: by, z: bz });
         let (axes, i) = ([a, b, a.cross(b)], V8 { x: ix, y: iy, z: iz });
-        let u = gather_twist::<F>(&bodies.velocities, &rows);
-        let d = gather_twist::<F>(&bodies.displacements, &rows);
+        let u = Twist8::of(F::gather(&bodies.velocities, &rows));
+        let d = Twist8::of(F::gather(&bodies.displacements, &rows));
         let end = from_axes(&axes, u.angular.times(i));
         let rotation = from_axes(&axes, d.angular.times(i));
 

@@ -12,7 +12,7 @@ use super::energy_guard::{EnergyGuard, Guarded, Guarding, per_lane};
 use super::points::Kind;
 use super::sweep::sweep;
 use super::warm_start::{add_momentum, apply_impulses, take_off_momentum};
-use crate::lanes::{Portable, Row};
+use crate::lanes::{Portable, Row, cells};
 
 /// The longest way on, in lengths of the way that the solution came.
 const FURTHEST: f64 = 20.0;
@@ -45,7 +45,7 @@ impl StandingPass<'_> {
         }
         take_off_momentum(blocks, details);
         let mut velocities = self.kicks.to_vec();
-        apply_impulses(blocks, &mut velocities);
+        apply_impulses(blocks, cells(&mut velocities));
         let islands = self.at.islands;
         if self.guard.gains(self.at, self.kicks, &velocities, Guarded::Guess) {
             self.guard.scale_back(islands, self.kicks, &mut velocities);
@@ -54,7 +54,7 @@ impl StandingPass<'_> {
         let mut last = Solution::of(blocks, &velocities);
         let mut way = last.clone();
         for k in 0..self.sweeps {
-            sweep(blocks, &mut velocities);
+            sweep(blocks, cells(&mut velocities));
             if k + 1 == self.sweeps {
                 break;
             }

@@ -6,7 +6,7 @@ use super::bodies::{Bodies, Column, eight_from, flags};
 use super::flight::spin_halfway;
 use super::poses::{Q8, from_axes, is_large, to_axes};
 use super::spring::pull;
-use crate::lanes::{LANES, LaneMask, Lanes, Row, V8, dispatched, prefetch};
+use crate::lanes::{LANES, LaneMask, Lanes, Row, V8, cells, dispatched, prefetch};
 use crate::{BodyKind, Environment, Member};
 
 dispatched! {
@@ -170,14 +170,14 @@ impl<F: Lanes> Own<F> {
         let (s, i) = (root(self.inverse_mass), V8 { x: root(i.x), y: root(i.y), z: root(i.z) });
         let (per_s, per_i) = (inverse(s), V8 { x: inverse(i.x), y: inverse(i.y), z: inverse(i.z) });
         let (p, [a, b, _]) = (self.position, self.axes);
-        F::scatter(&mut bodies.centres, &rows, [p.x, p.y, p.z, s, i.x, i.y, i.z, dynamic]);
-        F::scatter(&mut bodies.axes, &rows, [a.x, a.y, a.z, b.x, b.y, b.z, zero, zero]);
+        F::scatter(cells(&mut bodies.centres), &rows, [p.x, p.y, p.z, s, i.x, i.y, i.z, dynamic]);
+        F::scatter(cells(&mut bodies.axes), &rows, [a.x, a.y, a.z, b.x, b.y, b.z, zero, zero]);
         let v = self.velocity * per_s;
         let w = to_axes(&self.axes, spin).times(per_i);
-        F::scatter(&mut bodies.velocities, &rows, [v.x, v.y, v.z, w.x, w.y, w.z, zero, zero]);
+        F::scatter(cells(&mut bodies.velocities), &rows, [v.x, v.y, v.z, w.x, w.y, w.z, zero, zero]);
         // sqrt(I) Rᵀ I⁻¹ τ = I^(-1/2) Rᵀ τ
         let v = self.acceleration * (per_s * dynamic * h);
         let w = to_axes(&self.axes, self.torque).times(i) * (dynamic * h);
-        F::scatter(&mut bodies.kicks, &rows, [v.x, v.y, v.z, w.x, w.y, w.z, zero, zero]);
+        F::scatter(cells(&mut bodies.kicks), &rows, [v.x, v.y, v.z, w.x, w.y, w.z, zero, zero]);
     }
 }
