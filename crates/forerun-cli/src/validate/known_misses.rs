@@ -90,7 +90,6 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     ),
     miss("turntable", "friction 1, 1/240: spin at which it has slipped by 1 mm, rad/s", 0.4052, FROZEN_ARMS),
     miss("turntable", "friction 0.5, 1/240: creep in 20 s at 1.6 rad/s, m", 0.2436, FROZEN_ARMS),
-    miss("towers", "(b) 30 layers of planks: top plank lower than on a whole tower, m", 0.1291, RESTS_DEEP),
     miss("towers", "(b) 30 layers of planks: deepest overlap at the end, m", 0.00797, RESTS_DEEP),
     miss("card_house", "1/240: cards in place after 10 s", 9.0, FALLS),
     miss("card_house", "1/240: fastest card ever, m/s", 4.224, FALLS),

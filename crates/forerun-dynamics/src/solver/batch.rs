@@ -212,7 +212,8 @@ impl<'a> Batch<'a> {
     }
 
     /// Finds the class of each island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps;
-    /// 2 more where some manifold has points that push different ways, which only those of meshes do.
+    /// 2 more where points of a mesh's manifold push different ways. (So may those of two capsules that lie alongside each other, by a few degrees: their
+    /// mean serves.)
     fn classify(&mut self) {
         let Classes { sums, of_island, .. } = &mut self.classes;
         fill(sums, self.islands.count() + 1, (0.0, 0.0));
@@ -223,14 +224,17 @@ impl<'a> Batch<'a> {
         }
         of_island.clear();
         of_island.extend(sums.iter().map(|(weight, lost)| usize::from(*lost > HARD_PART * weight)));
-        if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
-            for k in 0..self.ends.len() {
-                let manifold = self.contacts().manifold(k);
-                let points = &manifold.points[..manifold.count as usize];
-                if points.iter().any(|p| p.normal != points[0].normal) {
-                    let island = self.island_of(&self.ends[k]);
-                    self.classes.of_island[island] |= 2;
-                }
+        if !self.members.iter().any(|m| is_mesh(&m.body.shape)) {
+            return;
+        }
+        for k in 0..self.ends.len() {
+            let (ends, manifold) = (self.ends[k], self.contacts().manifold(k));
+            let of_mesh = |i: u32| is_mesh(&self.members[i as usize].body.shape);
+            let points = &manifold.points[..manifold.count as usize];
+            let differ = points.iter().any(|p| p.normal != points[0].normal);
+            if differ && (of_mesh(ends.first) || of_mesh(ends.second)) {
+                let island = self.island_of(&ends);
+                self.classes.of_island[island] |= 2;
             }
         }
     }
@@ -332,7 +336,7 @@ impl<'a> Batch<'a> {
             driven: &self.driven,
             environment,
         };
-        at.find_endings(&self.bodies.spins, &mut self.endings);
+        at.find_endings(&mut self.endings);
         integrate_positions(members, &self.bodies, environment, &mut self.next);
         at.settle(&mut self.next, &self.endings);
     }

@@ -9,6 +9,7 @@ use forerun_geometry::{Quat, Shape, Vec3};
 
 use super::batch::{ContactList, Ends};
 use super::islands::Islands;
+use crate::scratch::fill;
 use crate::{BodyState, Environment, Member};
 
 /// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
@@ -22,8 +23,6 @@ const REST_TOUCH_M: f32 = 0.001;
 /// What the end of a frame needs to know about one body besides its rows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ending {
-    /// The angular velocity with which the contacts started. rad/s
-    pub(crate) spin: Vec3,
     /// Deepest overlap with anybody at the start of the frame. Metres.
     pub(crate) overlap: f32,
     /// Whether it touches anybody, and is not only about to.
@@ -61,10 +60,9 @@ impl Resting<'_> {
         self.contacts.ends.iter().enumerate().filter(|(k, _)| self.deepest[*k] < REST_TOUCH_M)
     }
 
-    /// What contacts tell of the bodies at the end of a frame that started with these spins.
-    pub(crate) fn find_endings(&self, spins: &[Vec3], endings: &mut Vec<Ending>) {
-        endings.clear();
-        endings.extend(spins.iter().map(|&spin| Ending { spin, ..Ending::default() }));
+    /// What contacts tell of the bodies at the end of a frame.
+    pub(crate) fn find_endings(&self, endings: &mut Vec<Ending>) {
+        fill(endings, self.members.len(), Ending::default());
         let settings = &self.environment.settings;
         if settings.rest_frames() == 0 {
             return;
