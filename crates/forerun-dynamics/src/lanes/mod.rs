@@ -242,25 +242,6 @@ pub(crate) fn scatter_twist<F: Lanes>(rows: &[Cell<Row>], index: &[u32; LANES], 
     F::scatter(rows, index, [l.x, l.y, l.z, a.x, a.y, a.z, F::zero(), F::zero()]);
 }
 
-/// Asks for the memory of what will be read soon.
-#[inline(always)]
-pub(crate) fn prefetch<T>(value: &T) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let start: *const i8 = std::ptr::from_ref(value).cast();
-        for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>() - 1]) {
-            // SAFETY: it reads nothing, and the address is inside of the value.
-            #[allow(unsafe_code, reason = "see above")]
-            unsafe {
-                _mm_prefetch::<_MM_HINT_T0>(start.add(byte));
-            }
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = value;
-}
-
 /// Records that are made of eight numbers in whatever form, and of plain integers.
 ///
 /// # Safety

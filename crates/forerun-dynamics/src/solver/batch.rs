@@ -220,8 +220,9 @@ impl<'a> Batch<'a> {
         self.chosen = chosen;
     }
 
-    /// Finds the class of each island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more
-    /// sweeps; 2 more where some manifold has points that push different ways, which only those of meshes do.
+    /// Finds the class of each island: 1 more where the load pass fails to place the weight (heaps, arches, wedged bodies), so that it needs more sweeps;
+    /// 2 more where points of a mesh's manifold push different ways. (So may those of two capsules that lie alongside each other, by a few degrees: their
+    /// mean serves.)
     fn classify(&mut self) {
         fill(&mut self.weights, self.islands.count() + 1, [0.0; 2]);
         for (i, strain) in self.loads.strain.iter().enumerate() {
@@ -231,13 +232,16 @@ impl<'a> Batch<'a> {
         }
         self.classes.clear();
         self.classes.extend(self.weights.iter().map(|[weight, lost]| u8::from(*lost > HARD_PART * weight)));
-        if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
-            for (k, ends) in self.ends.iter().enumerate() {
-                let points = self.contacts().manifold(k).points();
-                if points.iter().any(|p| p.normal != points[0].normal) {
-                    let island = self.island_of(ends);
-                    self.classes[island] |= 2;
-                }
+        if !self.members.iter().any(|m| is_mesh(&m.body.shape)) {
+            return;
+        }
+        for (k, ends) in self.ends.iter().enumerate() {
+            let points = self.contacts().manifold(k).points();
+            let of_mesh = |i: u32| is_mesh(&self.members[i as usize].body.shape);
+            let differ = points.iter().any(|p| p.normal != points[0].normal);
+            if differ && (of_mesh(ends.first) || of_mesh(ends.second)) {
+                let island = self.island_of(ends);
+                self.classes[island] |= 2;
             }
         }
     }

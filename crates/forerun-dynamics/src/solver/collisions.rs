@@ -119,7 +119,7 @@ fn bounce<F: Lanes, K: Kind>(block: &Block<F, K>, hits: &[F; 4], all: F, lacking
     let mut impulses = [F::zero(); 4];
     for q in 0..4 {
         impulses[q] = hits[q] * flat;
-        lacking[q] = lacking[q] - block.row_sums[q] * flat;
+        lacking[q] -= block.row_sums[q] * flat;
     }
     for _ in 0..POINT_ROUNDS {
         for q in 0..4 {
@@ -133,7 +133,7 @@ fn bounce<F: Lanes, K: Kind>(block: &Block<F, K>, hits: &[F; 4], all: F, lacking
                 } else {
                     block.coupling[coupling(p, q)]
                 };
-                lacking[p] = lacking[p] - k * change;
+                lacking[p] -= k * change;
             }
         }
     }

@@ -46,12 +46,7 @@ fn prepare_lanes<F: Lanes, K: Kind>(
     common: &Common,
 ) {
     let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
-    let details = recast_mut::<F, DetailsOf>(details);
-    for (at, block) in blocks.iter_mut().enumerate() {
-        if let Some(next) = details.get(at + 1) {
-            source.prefetch(&next.source);
-        }
-        let detail = &mut details[at];
+    for (block, detail) in blocks.iter_mut().zip(recast_mut::<F, DetailsOf>(details)) {
         let manifolds = Manifolds::gather::<K>(detail, source);
         let ends = Ends {
             first: End::gather(bodies, &block.first_row),

@@ -6,7 +6,7 @@ use super::bodies::{Bodies, Column, eight_from, flags};
 use super::flight::spin_halfway;
 use super::poses::{Q8, from_axes, is_large, to_axes};
 use super::spring::pull;
-use crate::lanes::{LANES, LaneMask, Lanes, Row, V8, cells, dispatched, prefetch};
+use crate::lanes::{LANES, LaneMask, Lanes, Row, V8, cells, dispatched};
 use crate::{BodyKind, Environment, Member};
 
 dispatched! {
@@ -23,9 +23,6 @@ fn velocity_lanes<F: Lanes>(bodies: &mut Bodies, members: &[Member], environment
     bodies.begin(members.len());
     for start in (0..bodies.centres.len()).step_by(LANES) {
         let eight = &members[start.min(members.len())..(start + LANES).min(members.len())];
-        for member in members.iter().skip(start + LANES).take(LANES) {
-            prefetch(member.body);
-        }
         let own = Own::<F>::gather(bodies, eight, start, environment);
         let spin = own.spin_halfway(eight, environment);
         own.write(bodies, start, spin, environment);
