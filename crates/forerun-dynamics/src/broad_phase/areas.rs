@@ -97,25 +97,21 @@ struct Bounds8 {
 const DYNAMIC: u32 = 1 << 31;
 
 impl Bounds8 {
-    fn clear(&mut self) {
-        self.min.iter_mut().chain(&mut self.max).for_each(Vec::clear);
+    /// Replaces what is held by some of `bounds`.
+    fn fill(&mut self, bounds: &[Bound], indices: impl Iterator<Item = u32>) {
         self.who.clear();
-    }
-
-    fn push(&mut self, bound: &Bound, index: u32) {
-        let (min, max) = (bound.aabb.min.to_array(), bound.aabb.max.to_array());
+        self.who.extend(indices.map(|i| i | if bounds[i as usize].dynamic { DYNAMIC } else { 0 }));
+        let count = self.who.len();
         for k in 0..3 {
-            self.min[k].push(min[k]);
-            self.max[k].push(max[k]);
-        }
-        self.who.push(index | if bound.dynamic { DYNAMIC } else { 0 });
-    }
-
-    fn pad(&mut self) {
-        for k in 0..3 {
-            let padded = self.who.len() + LANES;
-            self.min[k].resize(padded, f32::INFINITY);
-            self.max[k].resize(padded, f32::NEG_INFINITY);
+            let (min, max) = (&mut self.min[k], &mut self.max[k]);
+            min.resize(count + LANES, 0.0);
+            max.resize(count + LANES, 0.0);
+            for ((min, max), who) in min.iter_mut().zip(max.iter_mut()).zip(&self.who) {
+                let aabb = &bounds[(who & !DYNAMIC) as usize].aabb;
+                (*min, *max) = (aabb.min[k], aabb.max[k]);
+            }
+            min[count..].fill(f32::INFINITY);
+            max[count..].fill(f32::NEG_INFINITY);
         }
     }
 
@@ -222,13 +218,9 @@ impl Areas {
         }
         let highest = self.number(most);
         sort_by_area(&mut self.entries, &mut self.spare, &mut self.digits, highest);
-        self.bounds.clear();
         self.areas.clear();
-        for &(area, i) in &self.entries {
-            self.areas.push(area);
-            self.bounds.push(&bounds[i as usize], i);
-        }
-        self.bounds.pad();
+        self.areas.extend(self.entries.iter().map(|(area, _)| *area));
+        self.bounds.fill(bounds, self.entries.iter().map(|(_, i)| *i));
     }
 
     /// Appends the pairs among those in the areas.
@@ -255,11 +247,7 @@ impl Areas {
 
     /// Appends the pairs among `few`, each compared with each.
     pub(super) fn compare_all(&mut self, bounds: &[Bound], few: &[u32], pairs: &mut Vec<(u32, u32)>) {
-        self.bounds.clear();
-        for &i in few {
-            self.bounds.push(&bounds[i as usize], i);
-        }
-        self.bounds.pad();
+        self.bounds.fill(bounds, few.iter().copied());
         compare_all(&self.bounds, pairs);
     }
 
