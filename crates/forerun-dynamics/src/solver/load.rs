@@ -65,12 +65,18 @@ struct Points {
 
 impl Points {
     fn of(manifold: &Manifold) -> Points {
-        let p = &manifold.points;
-        let each = |of: fn(&ContactPoint) -> f32| [of(&p[0]), of(&p[1]), of(&p[2]), of(&p[3])];
+        // What fills the other places of a manifold is left open: here it is its first point, out of touch.
+        let mut p = [&manifold.points[0]; 4];
+        let mut separation = [f32::INFINITY; 4];
+        for (q, point) in manifold.points().iter().enumerate() {
+            p[q] = point;
+            separation[q] = point.separation;
+        }
+        let each = |of: fn(&ContactPoint) -> f32| [of(p[0]), of(p[1]), of(p[2]), of(p[3])];
         Points {
             position: [each(|p| p.position.x), each(|p| p.position.y), each(|p| p.position.z)],
             normal: [each(|p| p.normal.x), each(|p| p.normal.y), each(|p| p.normal.z)],
-            separation: each(|p| p.separation),
+            separation,
         }
     }
 
