@@ -2,9 +2,12 @@
 //!
 //! An island is wholly of one kind, so that it does not matter which kind goes first.
 
-use super::blocks::Arranged;
+use std::ops::RangeInclusive;
+
+use super::blocks::{Arranged, Class};
 use super::collisions::{Moving, resolve_collisions};
-use super::energy_guard::{EnergyGuard, Guarded};
+use super::descent::{Descent, Hard, Sweeps};
+use super::energy_guard::{EnergyGuard, Guarded, Guarding};
 use super::impulses::add_substep;
 use super::islands::Islands;
 use super::overlap::overlap_growth;
@@ -46,9 +49,30 @@ impl Rows {
         guard.scale_impulses(islands, (&mut uneven.blocks, &mut uneven.details), what);
     }
 
+    /// Delicate islands are left to [`Rows::descend`].
     pub(crate) fn sweep(&mut self, velocities: &mut [Row]) {
-        sweep(&mut self.flat.blocks, velocities);
-        sweep(&mut self.uneven.blocks, velocities);
+        let end = self.flat.of(Class::Delicate).start;
+        sweep(&mut self.flat.blocks[..end], velocities);
+        let end = self.uneven.of(Class::Delicate).start;
+        sweep(&mut self.uneven.blocks[..end], velocities);
+    }
+
+    /// Solves delicate islands.
+    pub(crate) fn descend(
+        &mut self,
+        descent: &mut Descent,
+        at: Guarding,
+        velocities: &mut [Row],
+        sweeps: Sweeps,
+    ) {
+        let delicate = self.flat.of(Class::Delicate);
+        let Arranged { blocks, details, .. } = &mut self.flat;
+        let hard = Hard { at, blocks: &mut blocks[delicate.clone()], details: &details[delicate] };
+        descent.run(hard, velocities, sweeps);
+        let delicate = self.uneven.of(Class::Delicate);
+        let Arranged { blocks, details, .. } = &mut self.uneven;
+        let hard = Hard { at, blocks: &mut blocks[delicate.clone()], details: &details[delicate] };
+        descent.run(hard, velocities, sweeps);
     }
 
     pub(crate) fn relax(&mut self, moving: &mut Moving, bounces: bool) {
@@ -61,21 +85,22 @@ impl Rows {
         add_substep(sums, &self.uneven);
     }
 
-    /// One pass over the blocks of hard islands, or over all; see [`propagate_shock`].
+    /// One pass over the blocks of islands of these classes; see [`propagate_shock`].
     pub(crate) fn propagate_shock(
         &self,
-        only_hard: OnlyHard,
+        classes: RangeInclusive<Class>,
         displacements: &mut [Row],
         settings: &StepSettings,
+        push_max: f32,
     ) {
-        let push_max = settings.recovery_speed_max * settings.frame_seconds;
-        let skipped = |easy: usize| if only_hard == OnlyHard::Yes { easy } else { 0 };
-        let from = skipped(self.flat.easy);
         let Arranged { blocks, details, .. } = &self.flat;
-        propagate_shock(&blocks[from..], &details[from..], displacements, settings, push_max);
-        let from = skipped(self.uneven.easy);
+        let chosen = self.flat.of(*classes.start()).start..self.flat.of(*classes.end()).end;
+        let (blocks, details) = (&blocks[chosen.clone()], &details[chosen]);
+        propagate_shock(blocks, details, displacements, settings, push_max);
         let Arranged { blocks, details, .. } = &self.uneven;
-        propagate_shock(&blocks[from..], &details[from..], displacements, settings, push_max);
+        let chosen = self.uneven.of(*classes.start()).start..self.uneven.of(*classes.end()).end;
+        let (blocks, details) = (&blocks[chosen.clone()], &details[chosen]);
+        propagate_shock(blocks, details, displacements, settings, push_max);
     }
 
     pub(crate) fn propagate_classic(
@@ -94,11 +119,4 @@ impl Rows {
         overlap_growth(&self.flat.blocks, &self.flat.details, displacements, growth);
         overlap_growth(&self.uneven.blocks, &self.uneven.details, displacements, growth);
     }
-}
-
-/// Which islands a pass is for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum OnlyHard {
-    No,
-    Yes,
 }
