@@ -257,4 +257,40 @@ mod tests {
         assert_eq!(quality.not_finite, 1);
         assert!(quality.overlap_end_m.is_finite());
     }
+
+    /// The same rock twice, turned at random, one in the other by up to half its size: by our meter and by parry, which looks for the
+    /// shortest way out in a way of its own.
+    #[cfg(feature = "engines")]
+    #[test]
+    fn overlap_of_two_rocks_is_the_one_that_parry_finds() {
+        use rapier3d::math::{Pose as ParryPose, Rotation, Vector};
+        use rapier3d::parry::query::contact;
+        use rapier3d::prelude::SharedShape;
+
+        let mut world = world_awake(&Scene::open("convex_pile:2").unwrap()).unwrap();
+        let Shape::Hull(hull) = world.bodies()[1].shape.clone() else { panic!("not a hull") };
+        let points: Vec<Vector> = hull.vertices.iter().map(|v| Vector::new(v.x, v.y, v.z)).collect();
+        let rock = SharedShape::convex_hull(&points).unwrap();
+        let parry_pose = |pose: &Pose| {
+            let (p, q) = (pose.position, pose.rotation);
+            ParryPose::from_parts(Vector::new(p.x, p.y, p.z), Rotation::from_xyzw(q.x, q.y, q.z, q.w))
+        };
+        // Directions and turns that fill the sphere without a generator: multiples of irrational parts of a turn.
+        for i in 0..60_i32 {
+            let part = |irrational: f32| 6.283_185_5 * (i as f32 * irrational).fract();
+            let turn = Quat::from_rotation_y(part(0.618_034)) * Quat::from_rotation_x(part(0.414_214));
+            let way = Quat::from_rotation_z(part(0.732_051)) * (turn * Vec3::X);
+            let high = Vec3::Y * 100.0;
+            let poses = [Pose::from_position(high), Pose::new(high + way * (2.0 + 0.03 * i as f32), turn)];
+            for (i, pose) in [1, 2].into_iter().zip(&poses) {
+                let state = world.bodies()[i].state_at(pose, Vec3::ZERO, Vec3::ZERO);
+                world.states_mut()[i] = state;
+            }
+            let ours = meter::deepest_overlap_m(&world);
+            let [a, b] = poses.each_ref().map(parry_pose);
+            let found = contact(&a, &*rock, &b, &*rock, 0.0).unwrap();
+            let parrys = found.map_or(0.0, |found| -found.dist);
+            assert!((ours - parrys).abs() < 2e-3 + 0.02 * parrys, "{i}: {ours} m, parry {parrys} m");
+        }
+    }
 }

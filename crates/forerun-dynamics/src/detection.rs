@@ -21,15 +21,25 @@ pub struct Detection {
 impl Detection {
     /// Replaces pairs and contacts by those of `members`.
     pub fn run(&mut self, members: &[Member], environment: &Environment) {
-        let Detection { prospects, bounds, broad_phase, narrow_phase, pairs, contacts } = self;
-        prospects.clear();
-        bounds.clear();
+        self.find_pairs(members, environment);
+        self.find_contacts(members, environment);
+    }
+
+    /// Replaces the pairs by those of `members`.
+    pub(crate) fn find_pairs(&mut self, members: &[Member], environment: &Environment) {
+        self.prospects.clear();
+        self.bounds.clear();
         for member in members {
             let prospect = Prospect::new(member.body, &member.state, environment);
-            prospects.push(prospect);
-            bounds.push(Bound { aabb: prospect.bound, dynamic: member.body.is_dynamic() });
+            self.prospects.push(prospect);
+            self.bounds.push(Bound { aabb: prospect.bound, dynamic: member.body.is_dynamic() });
         }
-        broad_phase.overlapping_pairs(bounds, pairs);
-        narrow_phase.find_contacts(&Outlook { members, prospects, environment }, pairs, contacts);
+        self.broad_phase.overlapping_pairs(&self.bounds, &mut self.pairs);
+    }
+
+    /// Replaces the contacts by those of the pairs.
+    pub(crate) fn find_contacts(&mut self, members: &[Member], environment: &Environment) {
+        let outlook = Outlook { members, prospects: &self.prospects, environment };
+        self.narrow_phase.find_contacts(&outlook, &self.pairs, &mut self.contacts);
     }
 }

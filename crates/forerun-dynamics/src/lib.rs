@@ -22,6 +22,7 @@ mod solver;
 pub mod stage;
 pub mod state;
 pub mod step;
+mod stillness;
 pub mod touch;
 pub mod world;
 

@@ -42,7 +42,18 @@ pub(crate) struct Plan {
     contact_starts: Vec<u32>,
     roots: Roots,
     traits: Vec<Trait>,
+    /// By contact of the group.
+    touches: Vec<Touching>,
     next: Vec<u32>,
+}
+
+/// What the plan asks of a contact.
+#[derive(Clone, Copy, Debug)]
+struct Touching {
+    first: u32,
+    second: u32,
+    /// Slices that its island needs at least.
+    slices: u32,
 }
 
 /// What the plan asks of a member again and again.
@@ -61,12 +72,25 @@ struct Trait {
 impl Plan {
     pub(crate) const NONE: u32 = u32::MAX;
 
-    /// Makes this the plan of a group.
-    pub(crate) fn make(&mut self, group: &Group, environment: &Environment) {
+    /// Makes this the plan of a group. `still` says, by member, who is known to rest; it may be empty.
+    pub(crate) fn make(&mut self, group: &Group, environment: &Environment, still: &[bool]) {
         self.traits.clear();
         self.traits.extend(group.members.iter().map(Trait::of));
+        self.join(group, environment);
+        self.find_resting(group, environment);
+        for (resting, still) in self.resting.iter_mut().zip(still) {
+            *resting |= still;
+        }
+        self.sort_members(group);
+        self.sort_contacts();
+    }
+
+    /// Who belongs to one island, and all else that is asked of contacts: they are large, and read once.
+    fn join(&mut self, group: &Group, environment: &Environment) {
+        let settings = &environment.settings;
         let traits = &mut self.traits;
         self.roots.separate(group.members.len());
+        self.touches.clear();
         for c in group.contacts {
             let (a, b) = (c.first as usize, c.second as usize);
             traits[a].touched = true;
@@ -74,12 +98,15 @@ impl Plan {
             if traits[a].dynamic && traits[b].dynamic {
                 self.roots.join(c.first, c.second);
             }
+            let limit = APPROACH_MAX * traits[a].half_thickness.min(traits[b].half_thickness);
+            let slices = if fastest(c, &traits[a], &traits[b]) * settings.frame_seconds <= limit {
+                1
+            } else {
+                slices_wanted(approach(c, group.members, environment), limit, settings.slices_max)
+            };
+            self.touches.push(Touching { first: c.first, second: c.second, slices });
         }
         self.roots.settle();
-        self.find_resting(group, environment);
-        self.sort_members(group);
-        self.sort_contacts(group);
-        self.count_slices(group, environment);
     }
 
     /// The dynamic members of an island (indices into the group), rising.
@@ -135,32 +162,29 @@ impl Plan {
         }
     }
 
-    fn sort_contacts(&mut self, group: &Group) {
+    fn sort_contacts(&mut self) {
         fill(&mut self.contact_starts, self.islands.len() + 1, 0);
-        for c in group.contacts {
-            let island = self.island_of_pair(c.first, c.second);
+        for touching in &self.touches {
+            let island = island_of_pair(&self.island_of, touching);
             if island != Plan::NONE {
                 self.contact_starts[island as usize + 1] += 1;
+                let slices = &mut self.islands[island as usize].slices;
+                *slices = touching.slices.max(*slices);
             }
         }
         add_up(&mut self.contact_starts);
         self.next.clone_from(&self.contact_starts);
         let count = self.contact_starts[self.islands.len()] as usize;
         fill(&mut self.contacts, count, Ends { first: 0, second: 0, contact: 0 });
-        for (k, c) in group.contacts.iter().enumerate() {
-            let island = self.island_of_pair(c.first, c.second);
+        for (k, touching) in self.touches.iter().enumerate() {
+            let island = island_of_pair(&self.island_of, touching);
             if island != Plan::NONE {
                 let at = &mut self.next[island as usize];
-                self.contacts[*at as usize] = Ends { first: c.first, second: c.second, contact: k as u32 };
+                let Touching { first, second, .. } = *touching;
+                self.contacts[*at as usize] = Ends { first, second, contact: k as u32 };
                 *at += 1;
             }
         }
-    }
-
-    /// The island that a contact between two members belongs to.
-    fn island_of_pair(&self, a: u32, b: u32) -> u32 {
-        let of_first = self.island_of[a as usize];
-        if of_first == Plan::NONE { self.island_of[b as usize] } else { of_first }
     }
 
     /// The island that a pair of members is inside of, or between and bodies that do not yield: it is where a slice of it looks for contacts.
@@ -195,7 +219,7 @@ impl Plan {
             }
         }
         let mut held = vec![false; members.len()];
-        for c in group.contacts {
+        for c in &self.touches {
             for (support, carried) in [(c.first, c.second), (c.second, c.first)] {
                 let support = &members[support as usize];
                 held[roots.root(carried as usize)] |= !support.body.is_dynamic();
@@ -208,28 +232,6 @@ impl Plan {
         }
         for (i, resting) in self.resting.iter_mut().enumerate() {
             *resting = self.traits[i].dynamic && !awake[roots.root(i)];
-        }
-    }
-
-    /// Enough slices that nothing approaches by more than it is thick; a power of two.
-    fn count_slices(&mut self, group: &Group, environment: &Environment) {
-        let most = environment.settings.slices_max;
-        for island in 0..self.islands.len() {
-            let mut slices = 1;
-            for ends in self.contacts(island as u32) {
-                let contact = &group.contacts[ends.contact as usize];
-                let (a, b) = (&self.traits[ends.first as usize], &self.traits[ends.second as usize]);
-                let limit = APPROACH_MAX * a.half_thickness.min(b.half_thickness);
-                if fastest(contact, a, b) * environment.settings.frame_seconds <= limit {
-                    continue;
-                }
-                let (a, b) = (&group.members[ends.first as usize], &group.members[ends.second as usize]);
-                let approach = approach(contact, a, b, environment);
-                while slices < most && approach > limit * slices as f32 {
-                    slices *= 2;
-                }
-            }
-            self.islands[island].slices = slices;
         }
     }
 }
@@ -252,7 +254,12 @@ impl Trait {
 fn fastest(contact: &Contact, a: &Trait, b: &Trait) -> f32 {
     /// For rounding, and points a little outside of a shape.
     const SLACK: f32 = 1.5;
-    let apart = contact.manifold.points().iter().fold(0.0, |most, p| f32::max(most, p.separation));
+    let mut apart = 0.0;
+    for point in contact.manifold.points() {
+        if point.separation > apart {
+            apart = point.separation;
+        }
+    }
     let of = |t: &Trait| t.speed + if t.spin > 0.0 { t.spin * (t.radius + apart) } else { 0.0 };
     SLACK * (of(a) + of(b))
 }
@@ -263,13 +270,28 @@ pub(crate) fn half_thickness(a: &Member, b: &Member) -> f32 {
 }
 
 /// How far the contact closes in the frame at the speed of its start. Metres.
-fn approach(contact: &Contact, a: &Member, b: &Member, environment: &Environment) -> f32 {
-    let m = &contact.manifold;
+fn approach(contact: &Contact, members: &[Member], environment: &Environment) -> f32 {
+    let (a, b) = (&members[contact.first as usize].state, &members[contact.second as usize].state);
     // Without gravity: what lies still is not to be cut, however thin it is.
-    m.points[..m.count as usize].iter().fold(0.0, |most, p| {
-        let speed = (a.state.velocity_at(p.position) - b.state.velocity_at(p.position)).dot(p.normal);
+    contact.manifold.points().iter().fold(0.0, |most, p| {
+        let speed = (a.velocity_at(p.position) - b.velocity_at(p.position)).dot(p.normal);
         f32::max(most, speed * environment.settings.frame_seconds)
     })
+}
+
+/// Enough slices that nothing approaches by more than `limit` in one; a power of two.
+fn slices_wanted(approach: f32, limit: f32, most: u32) -> u32 {
+    let mut slices = 1;
+    while slices < most && approach > limit * slices as f32 {
+        slices *= 2;
+    }
+    slices
+}
+
+/// The island that a contact between two members belongs to.
+fn island_of_pair(island_of: &[u32], touching: &Touching) -> u32 {
+    let of_first = island_of[touching.first as usize];
+    if of_first == Plan::NONE { island_of[touching.second as usize] } else { of_first }
 }
 
 /// Sorts the chosen islands, meshes last, else in order, and packs them into batches: ranges of what is sorted.

@@ -272,7 +272,7 @@ impl<'a> Slicer<'a> {
             return;
         }
         let part = self.environment.settings.deep_overlap_part;
-        for (ends, growth) in batch.ends.iter().zip(batch.overlap_growth()) {
+        for (ends, &growth) in batch.ends.iter().zip(&batch.overlap_growth) {
             if growth > DEEP_M {
                 let (a, b) = (&batch.members[ends.first as usize], &batch.members[ends.second as usize]);
                 if growth > part * half_thickness(a, b) {

@@ -50,12 +50,19 @@ pub struct Group<'a> {
 pub struct StepReport {
     /// Islands with at least one contact that were solved.
     pub islands: u32,
-    /// Contacts (manifolds) found.
+    /// Contacts (manifolds) found; where bodies are known to stay at rest, none are looked for.
     pub contacts: u32,
     /// Most slices that an island's frame was cut into; 1 when none was.
     pub slices_max: u32,
     /// Bodies whose next state was not finite: they were stopped where they were.
     pub quarantined: u32,
+}
+
+impl StepReport {
+    /// Of a step in which nobody had to be moved.
+    pub(crate) fn of_nothing() -> StepReport {
+        StepReport { slices_max: 1, ..StepReport::default() }
+    }
 }
 
 /// The states of the members one frame later, in the members' order.
@@ -68,7 +75,7 @@ pub fn advance<'s>(
     observer: &mut dyn Observer,
     scratch: &'s mut StepScratch,
 ) -> (&'s [BodyState], StepReport) {
-    let report = advance_islands(group, environment, observer, (None, scratch));
+    let report = advance_islands(group, environment, observer, Known::default(), scratch);
     (&scratch.next, report)
 }
 
@@ -80,8 +87,18 @@ pub fn advance_touching<'s>(
     touches: &mut Touches,
     scratch: &'s mut StepScratch,
 ) -> (&'s [BodyState], StepReport) {
-    let report = advance_islands(group, environment, observer, (Some(touches), scratch));
+    let known = Known { touches: Some(touches), ..Known::default() };
+    let report = advance_islands(group, environment, observer, known, scratch);
     (&scratch.next, report)
+}
+
+/// What a world asks and knows.
+#[derive(Default)]
+pub(crate) struct Known<'a> {
+    /// Where somebody asks who touched whom.
+    pub(crate) touches: Option<&'a mut Touches>,
+    /// By member, or empty: whether it is known to stay at rest. Then the group has no pairs of it.
+    pub(crate) still: &'a [bool],
 }
 
 /// As [`advance`]; tells who touched whom where somebody asks. The states are the scratch's.
@@ -89,10 +106,11 @@ pub(crate) fn advance_islands(
     group: &Group,
     environment: &Environment,
     observer: &mut dyn Observer,
-    (touches, scratch): (Option<&mut Touches>, &mut StepScratch),
+    Known { touches, still }: Known,
+    scratch: &mut StepScratch,
 ) -> StepReport {
     let StepScratch { plan, slices, next, slice_counts, chosen, .. } = scratch;
-    plan.make(group, environment);
+    plan.make(group, environment, still);
     let mut ledger = touches.is_some().then(Ledger::default);
     let dt = environment.settings.frame_seconds;
     next.clear();
@@ -103,8 +121,7 @@ pub(crate) fn advance_islands(
     let mut report = StepReport {
         islands: plan.islands.len() as u32,
         contacts: group.contacts.len() as u32,
-        slices_max: 1,
-        quarantined: 0,
+        ..StepReport::of_nothing()
     };
     slice_counts.clear();
     slice_counts.extend(plan.islands.iter().map(|island| island.slices));

@@ -2,7 +2,8 @@
 
 use crate::detection::Detection;
 use crate::scratch::{StepScratch, emptied};
-use crate::step::{Group, Member, StepReport, advance_islands};
+use crate::step::{Group, Known, Member, StepReport, advance_islands};
+use crate::stillness::Stillness;
 use crate::{Body, BodyDef, BodyError, BodyId, BodyState, Environment, Observer, Stage, Touch, Touches};
 
 /// Bodies at one frame.
@@ -12,6 +13,7 @@ pub struct World {
     states: Vec<BodyState>,
     detection: Detection,
     scratch: StepScratch,
+    stillness: Stillness,
     /// Gravity and settings. While [`Environment::check`] refuses them, [`World::step`] moves nothing.
     pub environment: Environment,
 }
@@ -31,6 +33,7 @@ impl World {
         let (body, state) = Body::new(def)?;
         self.bodies.push(body);
         self.states.push(state);
+        self.stillness.forget();
         Ok(BodyId(self.bodies.len() as u32 - 1))
     }
 
@@ -42,6 +45,7 @@ impl World {
 
     /// All bodies, to be changed.
     pub fn bodies_mut(&mut self) -> &mut [Body] {
+        self.stillness.forget();
         &mut self.bodies
     }
 
@@ -53,10 +57,12 @@ impl World {
 
     /// The states, to be changed. A state that is not finite stops the body at the next step.
     pub fn states_mut(&mut self) -> &mut [BodyState] {
+        self.stillness.forget();
         &mut self.states
     }
 
-    /// Goes on by one frame; stands still, with an empty report, in an environment that is not possible.
+    /// Goes on by one frame; stands still, with an empty report, in an environment that is not possible. While all bodies rest, and nothing is changed
+    /// from outside, there is nothing to do.
     pub fn step(&mut self, observer: &mut dyn Observer) -> StepReport {
         self.advance(observer, None)
     }
@@ -64,6 +70,9 @@ impl World {
     /// As [`World::step`], with the same bits, and tells who touched whom during the frame. `touches` is what the step before told (at
     /// first: the default), as bodies at rest are not looked at again.
     pub fn step_touching(&mut self, observer: &mut dyn Observer, touches: &mut Touches) -> StepReport {
+        if touches.resting.len() == self.states.len() && self.stillness.everybody(&self.environment) {
+            return StepReport::of_nothing();
+        }
         let before = std::mem::take(touches);
         let report = self.advance(observer, Some(touches));
         let rests = |id: BodyId| touches.resting.get(id.0 as usize).is_some_and(|resting| *resting);
@@ -78,19 +87,26 @@ impl World {
         if self.environment.check().is_err() {
             return StepReport::default();
         }
-        let mut members: Vec<Member> = std::mem::take(&mut self.scratch.members);
-        members.extend((self.bodies.iter().zip(&self.states).enumerate()).map(|(i, (body, state))| Member {
+        if touches.is_none() && self.stillness.everybody(&self.environment) {
+            return StepReport::of_nothing();
+        }
+        let World { bodies, states, detection, scratch, stillness, environment } = self;
+        let mut members: Vec<Member> = std::mem::take(&mut scratch.members);
+        members.extend((bodies.iter().zip(&*states).enumerate()).map(|(i, (body, state))| Member {
             id: BodyId(i as u32),
             body,
             state: *state,
         }));
-        let detection = &mut self.detection;
-        detection.run(&members, &self.environment);
+        detection.find_pairs(&members, environment);
+        stillness.set_apart(&members, environment, &mut detection.pairs);
+        detection.find_contacts(&members, environment);
         observer.after(Stage::Collisions);
         let group = Group { members: &members, pairs: &detection.pairs, contacts: &detection.contacts };
-        let report = advance_islands(&group, &self.environment, observer, (touches, &mut self.scratch));
-        self.scratch.members = emptied(members);
-        std::mem::swap(&mut self.states, &mut self.scratch.next);
+        let known = Known { still: &stillness.still, touches };
+        let report = advance_islands(&group, environment, observer, known, scratch);
+        scratch.members = emptied(members);
+        stillness.note((states, &scratch.next), &scratch.plan.resting, environment);
+        std::mem::swap(states, &mut scratch.next);
         report
     }
 

@@ -6,6 +6,7 @@
 #![allow(unsafe_code, reason = "one of the rooms that use processor intrinsics")]
 
 use std::arch::x86_64::*;
+use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{LANES, LaneMask, Lanes, Row};
@@ -73,24 +74,50 @@ unsafe impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
+    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
+        assert_below(index, rows.len());
         let mut r = [unsafe { _mm256_setzero_ps() }; LANES];
         for lane in 0..LANES {
-            r[lane] = unsafe { _mm256_load_ps(rows[index[lane] as usize].0.as_ptr()) };
+            // SAFETY: the index was found to be below the length.
+            r[lane] = unsafe { _mm256_load_ps(rows.get_unchecked(index[lane] as usize).as_ptr().cast()) };
         }
         let [a, b, c, d, e, f, g, h] = transpose(r);
         [Avx2(a), Avx2(b), Avx2(c), Avx2(d), Avx2(e), Avx2(f), Avx2(g), Avx2(h)]
     }
 
     #[inline(always)]
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
-        let [a, b, c, d, e, f] = values;
-        let zero = unsafe { _mm256_setzero_ps() };
-        let columns = transpose([a.0, b.0, c.0, d.0, e.0, f.0, zero, zero]);
+    fn scatter(rows: &[Cell<Row>], index: &[u32; LANES], values: [Self; LANES]) {
+        assert_below(index, rows.len());
+        let [a, b, c, d, e, f, g, h] = values;
+        let columns = transpose([a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0]);
         for lane in 0..LANES {
-            unsafe { _mm256_store_ps(rows[index[lane] as usize].0.as_mut_ptr(), columns[lane]) };
+            // SAFETY: the index was found to be below the length.
+            unsafe {
+                _mm256_store_ps(rows.get_unchecked(index[lane] as usize).as_ptr().cast(), columns[lane])
+            };
         }
     }
+}
+
+/// Panics unless all indices are below the length: eight checks in one.
+#[inline(always)]
+fn assert_below(index: &[u32; LANES], length: usize) {
+    let last = (length.min(1 << 31) as u32).wrapping_sub(1) as i32;
+    let below = length > 0
+        && unsafe {
+            let last = _mm256_set1_epi32(last);
+            let most = _mm256_max_epu32(_mm256_loadu_si256(index.as_ptr().cast()), last);
+            _mm256_movemask_epi8(_mm256_cmpeq_epi32(most, last)) == -1
+        };
+    if !below {
+        out_of_range(index, length);
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn out_of_range(index: &[u32; LANES], length: usize) -> ! {
+    panic!("rows {index:?} of {length}");
 }
 
 /// Eight rows of eight to eight columns.

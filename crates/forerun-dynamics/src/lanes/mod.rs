@@ -7,6 +7,7 @@
     reason = "kernels walk several short arrays side by side; closures would not be compiled for the instruction set"
 )]
 
+use std::cell::Cell;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
@@ -36,6 +37,8 @@ pub(crate) const LANES: usize = 8;
 #[allow(unsafe_code, reason = "blocks of one form are read as blocks of another")]
 pub(crate) unsafe trait Lanes:
     Copy
+    + Send
+    + Sync
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -57,10 +60,16 @@ pub(crate) unsafe trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
 
     /// Rows of eight bodies, turned so that each number of the record is one value.
-    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES];
+    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES];
 
-    /// Writes six numbers of eight bodies. Lanes that share an index must hold equal values.
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]);
+    /// Writes the rows of eight bodies. Lanes that share an index must hold equal values.
+    fn scatter(rows: &[Cell<Row>], index: &[u32; LANES], values: [Self; LANES]);
+
+    /// As [`Lanes::gather_cells`], of rows that nobody writes.
+    #[inline(always)]
+    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
+        Self::gather_cells(still(rows), index)
+    }
 
     #[inline(always)]
     fn zero() -> Self {
@@ -203,18 +212,53 @@ impl<F: Lanes> Neg for V8<F> {
     }
 }
 
-/// Linear and angular parts of eight bodies.
+/// Rows to be written here and there, in whatever order.
+pub(crate) fn cells(rows: &mut [Row]) -> &[Cell<Row>] {
+    Cell::from_mut(rows).as_slice_of_cells()
+}
+
+/// Rows that nobody writes for now.
 #[inline(always)]
-pub(crate) fn gather_twist<F: Lanes>(rows: &[Row], index: &[u32; LANES]) -> Twist8<F> {
-    let [a, b, c, d, e, f, ..] = F::gather(rows, index);
-    Twist8 { linear: V8 { x: a, y: b, z: c }, angular: V8 { x: d, y: e, z: f } }
+fn still(rows: &[Row]) -> &[Cell<Row>] {
+    // SAFETY: a cell is laid out as what is in it. While the shared reference lives nobody writes the rows, and no kernel writes what it only gathers.
+    #[allow(unsafe_code, reason = "kernels read rows that stay as they are and rows that others write alike")]
+    unsafe {
+        std::slice::from_raw_parts(rows.as_ptr().cast(), rows.len())
+    }
+}
+
+impl<F: Lanes> Twist8<F> {
+    /// Of the rows of eight bodies.
+    #[inline(always)]
+    pub(crate) fn of([a, b, c, d, e, f, ..]: [F; LANES]) -> Self {
+        Twist8 { linear: V8 { x: a, y: b, z: c }, angular: V8 { x: d, y: e, z: f } }
+    }
 }
 
 /// Writes the parts back. Lanes that share an index must hold equal values.
 #[inline(always)]
-pub(crate) fn scatter_twist<F: Lanes>(rows: &mut [Row], index: &[u32; LANES], twist: &Twist8<F>) {
+pub(crate) fn scatter_twist<F: Lanes>(rows: &[Cell<Row>], index: &[u32; LANES], twist: &Twist8<F>) {
     let (l, a) = (twist.linear, twist.angular);
-    F::scatter(rows, index, [l.x, l.y, l.z, a.x, a.y, a.z]);
+    F::scatter(rows, index, [l.x, l.y, l.z, a.x, a.y, a.z, F::zero(), F::zero()]);
+}
+
+/// Asks for the memory of what will be read soon.
+#[inline(always)]
+pub(crate) fn prefetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let start: *const i8 = std::ptr::from_ref(value).cast();
+        for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>() - 1]) {
+            // SAFETY: it reads nothing, and the address is inside of the value.
+            #[allow(unsafe_code, reason = "see above")]
+            unsafe {
+                _mm_prefetch::<_MM_HINT_T0>(start.add(byte));
+            }
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = value;
 }
 
 /// Records that are made of eight numbers in whatever form, and of plain integers.

@@ -1,6 +1,7 @@
 //! Lanes as plain arrays: every target has these.
 #![allow(unsafe_code, reason = "says of its layout what the other rooms rely on")]
 
+use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{LANES, LaneMask, Lanes, Row};
@@ -72,16 +73,15 @@ unsafe impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
-        let rows = index.map(|i| rows[i as usize].0);
+    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
+        let rows = index.map(|i| rows[i as usize].get().0);
         std::array::from_fn(|k| Portable(rows.map(|row| row[k])))
     }
 
     #[inline(always)]
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
+    fn scatter(rows: &[Cell<Row>], index: &[u32; LANES], values: [Self; LANES]) {
         for (lane, &i) in index.iter().enumerate() {
-            let [a, b, c, d, e, f] = values.map(|v| v.0[lane]);
-            rows[i as usize].0 = [a, b, c, d, e, f, 0.0, 0.0];
+            rows[i as usize].set(Row(values.map(|v| v.0[lane])));
         }
     }
 }

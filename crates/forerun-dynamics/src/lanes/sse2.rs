@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "one of the rooms that use processor intrinsics")]
 
 use std::arch::x86_64::*;
+use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{LANES, LaneMask, Lanes, Row};
@@ -75,13 +76,13 @@ unsafe impl Lanes for Sse2 {
     }
 
     #[inline(always)]
-    fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
+    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
         let mut columns = [Self::zero(); LANES];
         for half in 0..2 {
             let mut low = [unsafe { _mm_setzero_ps() }; 4];
             let mut high = low;
             for lane in 0..4 {
-                let row = rows[index[4 * half + lane] as usize].0.as_ptr();
+                let row: *const f32 = rows[index[4 * half + lane] as usize].as_ptr().cast();
                 (low[lane], high[lane]) = unsafe { (_mm_load_ps(row), _mm_load_ps(row.add(4))) };
             }
             let (low, high) = (transpose(low), transpose(high));
@@ -97,16 +98,15 @@ unsafe impl Lanes for Sse2 {
     }
 
     #[inline(always)]
-    fn scatter(rows: &mut [Row], index: &[u32; LANES], values: [Self; 6]) {
-        let [a, b, c, d, e, f] = values;
-        let zero = unsafe { _mm_setzero_ps() };
+    fn scatter(rows: &[Cell<Row>], index: &[u32; LANES], values: [Self; LANES]) {
+        let [a, b, c, d, e, f, g, h] = values;
         let quarters = [
-            (transpose([a.0, b.0, c.0, d.0]), transpose([e.0, f.0, zero, zero])),
-            (transpose([a.1, b.1, c.1, d.1]), transpose([e.1, f.1, zero, zero])),
+            (transpose([a.0, b.0, c.0, d.0]), transpose([e.0, f.0, g.0, h.0])),
+            (transpose([a.1, b.1, c.1, d.1]), transpose([e.1, f.1, g.1, h.1])),
         ];
         for half in 0..2 {
             for lane in 0..4 {
-                let row = rows[index[4 * half + lane] as usize].0.as_mut_ptr();
+                let row: *mut f32 = rows[index[4 * half + lane] as usize].as_ptr().cast();
                 unsafe {
                     _mm_store_ps(row, quarters[half].0[lane]);
                     _mm_store_ps(row.add(4), quarters[half].1[lane]);

@@ -7,7 +7,7 @@ fn mix<F: Lanes>(a: [f32; LANES], b: [f32; LANES]) -> [[f32; LANES]; 6] {
     let rows: Vec<Row> = (0..9).map(|i| Row(std::array::from_fn(|k| a[k] + i as f32 * b[k]))).collect();
     let g = F::gather(&rows, &[8, 3, 1, 0, 2, 7, 5, 4]);
     let mut out = rows.clone();
-    F::scatter(&mut out, &[0, 1, 2, 3, 4, 5, 6, 7], [g[5], g[4], g[3], g[2], g[1], g[0]]);
+    F::scatter(cells(&mut out), &[0, 1, 2, 3, 4, 5, 6, 7], [g[5], g[4], g[3], g[2], g[1], g[0], g[7], g[6]]);
     [
         (x * y + x / y - (x * x + y * y).sqrt()).to_array(),
         x.lt(y).select(x.max(y), -x.abs().min(y)).to_array(),

@@ -2,6 +2,7 @@
 
 use forerun_geometry::{ContactPoint, Manifold, Vec3};
 
+use super::Contact;
 use super::cuboids::{Axes, Box8, TIE_M};
 use crate::lanes::{LANES, LaneMask, Lanes, V8};
 
@@ -32,30 +33,38 @@ pub(super) struct Clipped {
 }
 
 impl Clipped {
+    /// Appends the contact of one pair; its own normal is that of all its points.
     #[inline(always)]
-    pub(super) fn lane(&self, lane: usize) -> Manifold {
+    pub(super) fn push_lane(&self, lane: usize, (first, second): (u32, u32), out: &mut Vec<Contact>) {
         let normal = Vec3::new(self.normal[0][lane], self.normal[1][lane], self.normal[2][lane]);
-        let mut points = [ContactPoint { position: Vec3::ZERO, normal, separation: 0.0 }; 4];
+        let blank = ContactPoint { position: Vec3::ZERO, normal, separation: 0.0 };
+        let manifold = Manifold { normal, points: [blank; 4], count: 0 };
+        // Filled where it stays.
+        out.push(Contact { first, second, manifold });
+        let Some(Contact { manifold, .. }) = out.last_mut() else { return };
         let mut count = 0;
         for k in 0..4 {
             if self.valid[k][lane] > 0.5 {
                 let p = &self.points[k];
-                points[count].position = Vec3::new(p[0][lane], p[1][lane], p[2][lane]);
-                points[count].separation = self.separation[k][lane];
+                manifold.points[count].position = Vec3::new(p[0][lane], p[1][lane], p[2][lane]);
+                manifold.points[count].separation = self.separation[k][lane];
                 count += 1;
             }
         }
-        Manifold { normal, points, count: count as u32 }
+        manifold.count = count as u32;
+        if count == 0 {
+            out.pop();
+        }
     }
 }
 
 #[inline(always)]
-fn pick<F: Lanes>(first: F::Mask, second: F::Mask, of: [F; 3]) -> F {
+pub(super) fn pick<F: Lanes>(first: F::Mask, second: F::Mask, of: [F; 3]) -> F {
     first.select(of[0], second.select(of[1], of[2]))
 }
 
 #[inline(always)]
-fn pick_v<F: Lanes>(first: F::Mask, second: F::Mask, of: [V8<F>; 3]) -> V8<F> {
+pub(super) fn pick_v<F: Lanes>(first: F::Mask, second: F::Mask, of: [V8<F>; 3]) -> V8<F> {
     first.select_v(of[0], second.select_v(of[1], of[2]))
 }
 

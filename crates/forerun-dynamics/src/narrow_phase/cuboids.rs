@@ -7,6 +7,7 @@ use forerun_geometry::{ContactPoint, Manifold, Shape, Vec3};
 
 use super::cuboid_faces::clip_faces;
 use super::{Contact, FAST, Outlook};
+use crate::BodyKind;
 use crate::bounds::MOTION_FACTOR;
 use crate::lanes::{LANES, LaneMask, Lanes, Row, V8, dispatched};
 
@@ -17,43 +18,58 @@ const FIRST_BOX_PREFERENCE_M: f32 = 1e-3;
 /// Of candidates that are equal up to this, the earlier one wins. Metres.
 pub(super) const TIE_M: f32 = 1e-5;
 
-/// Boxes in the form that the lanes gather, at the places of their members.
+/// What the lanes know of a member.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Cuboid,
+    HalfSpace,
+    Other,
+}
+
+/// Boxes and half-spaces in the form that the lanes gather, at the places of their members.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Boxes {
-    /// Centre, half extents, first two components of the displacement in the frame.
-    centres: Vec<Row>,
+    /// Centre, half extents, first two components of the displacement in the frame. Of a half-space: a point and its normal.
+    pub(super) centres: Vec<Row>,
     /// Two of the axes, third component of the displacement, sway.
     axes: Vec<Row>,
-    is_box: Vec<bool>,
-    contact_margin_m: f32,
+    kinds: Vec<Kind>,
+    pub(super) contact_margin_m: f32,
 }
 
 impl Boxes {
     /// Replaces all boxes.
     pub(super) fn fill(&mut self, bodies: &Outlook) {
-        let Boxes { centres, axes, is_box, contact_margin_m } = self;
+        let Boxes { centres, axes, kinds, contact_margin_m } = self;
         *contact_margin_m = bodies.environment.settings.contact_margin_m;
-        centres.clear();
-        axes.clear();
-        is_box.clear();
-        for (member, prospect) in bodies.members.iter().zip(bodies.prospects) {
-            let Shape::Cuboid(cuboid) = &member.body.shape else {
-                centres.push(Row::default());
-                axes.push(Row::default());
-                is_box.push(false);
-                continue;
-            };
-            let (p, h, l) = (prospect.pose.position, cuboid.half_extents, prospect.motion.linear);
-            let m = prospect.pose.axes();
-            let (u, v) = (m.x_axis, m.y_axis);
-            centres.push(Row([p.x, p.y, p.z, h.x, h.y, h.z, l.x, l.y]));
-            axes.push(Row([u.x, u.y, u.z, v.x, v.y, v.z, l.z, prospect.sway_m]));
-            is_box.push(true);
+        let count = bodies.members.len();
+        centres.resize(count, Row::default());
+        axes.resize(count, Row::default());
+        kinds.clear();
+        let rows = centres.iter_mut().zip(axes.iter_mut());
+        for ((member, prospect), (centre, axes)) in bodies.members.iter().zip(bodies.prospects).zip(rows) {
+            let p = prospect.pose.position;
+            kinds.push(match &member.body.shape {
+                Shape::Cuboid(cuboid) => {
+                    let (h, l, m) = (cuboid.half_extents, prospect.motion.linear, prospect.pose.axes());
+                    let (u, v) = (m.x_axis, m.y_axis);
+                    centre.0 = [p.x, p.y, p.z, h.x, h.y, h.z, l.x, l.y];
+                    axes.0 = [u.x, u.y, u.z, v.x, v.y, v.z, l.z, prospect.sway_m];
+                    Kind::Cuboid
+                }
+                // One that moves is left to the general search.
+                Shape::HalfSpace if member.body.kind == BodyKind::Fixed => {
+                    let n = prospect.pose.axes().y_axis;
+                    centre.0 = [p.x, p.y, p.z, n.x, n.y, n.z, 0.0, 0.0];
+                    Kind::HalfSpace
+                }
+                _ => Kind::Other,
+            });
         }
     }
 
-    pub(super) fn is_box(&self, member: u32) -> bool {
-        self.is_box[member as usize]
+    pub(super) fn kind(&self, member: u32) -> Kind {
+        self.kinds[member as usize]
     }
 }
 
@@ -63,13 +79,13 @@ pub(super) struct Box8<F: Lanes> {
     pub(super) half: [F; 3],
     pub(super) axes: [V8<F>; 3],
     /// Displacement in the frame.
-    linear: V8<F>,
-    sway: F,
+    pub(super) linear: V8<F>,
+    pub(super) sway: F,
 }
 
 impl<F: Lanes> Box8<F> {
     #[inline(always)]
-    fn gather(boxes: &Boxes, index: &[u32; LANES]) -> Self {
+    pub(super) fn gather(boxes: &Boxes, index: &[u32; LANES]) -> Self {
         let c = F::gather(&boxes.centres, index);
         let a = F::gather(&boxes.axes, index);
         let (u, v) = (V8 { x: a[0], y: a[1], z: a[2] }, V8 { x: a[3], y: a[4], z: a[5] });
@@ -146,13 +162,12 @@ fn manifolds_of_eight<F: Lanes>(
         if near >> lane & 1 == 0 {
             continue;
         }
-        let manifold = if by_edge >> lane & 1 == 1 {
-            edge_manifold(&lane_box(a, lane), &lane_box(b, lane), axes.edge.to_array()[lane] as usize)
-        } else {
-            clipped.lane(lane)
-        };
-        if manifold.count > 0 {
+        if by_edge >> lane & 1 == 1 {
+            let edge = axes.edge.to_array()[lane] as usize;
+            let manifold = edge_manifold(&lane_box(a, lane), &lane_box(b, lane), edge);
             out.push(Contact { first, second, manifold });
+        } else {
+            clipped.push_lane(lane, (first, second), out);
         }
     }
 }

@@ -8,6 +8,7 @@
 
 mod cuboid_faces;
 mod cuboids;
+mod ground;
 mod merge;
 #[cfg(test)]
 mod tests;
@@ -15,7 +16,8 @@ mod tests;
 use forerun_geometry::{Manifold, Placed};
 use rayon::prelude::*;
 
-use self::cuboids::{Boxes, cuboid_contacts};
+use self::cuboids::{Boxes, Kind, cuboid_contacts};
+use self::ground::ground_contacts;
 use crate::bounds::{Prospect, pair_margin};
 use crate::{Environment, Member};
 
@@ -99,6 +101,8 @@ impl NarrowPhase {
 #[derive(Clone, Debug, Default)]
 struct Search {
     box_pairs: Vec<(u32, u32)>,
+    /// A box and a half-space.
+    ground_pairs: Vec<(u32, u32)>,
     other_pairs: Vec<(u32, u32)>,
     /// Pairs of boxes that are fast: they may meet in a corner, or pass each other, and the lanes know only faces and edges.
     fast: Vec<(u32, u32)>,
@@ -108,15 +112,28 @@ struct Search {
 
 impl Search {
     fn run(&mut self, bodies: &Outlook, boxes: &Boxes, pairs: &[(u32, u32)], contacts: &mut Vec<Contact>) {
-        self.box_pairs.clear();
-        self.other_pairs.clear();
-        self.fast.clear();
-        self.others.clear();
-        for &(first, second) in pairs {
-            let both_boxes = boxes.is_box(first) && boxes.is_box(second);
-            if both_boxes { &mut self.box_pairs } else { &mut self.other_pairs }.push((first, second));
+        let Search { box_pairs, ground_pairs, other_pairs, fast, others, .. } = self;
+        for list in [&mut *box_pairs, &mut *ground_pairs, &mut *other_pairs, &mut *fast] {
+            list.clear();
         }
-        cuboid_contacts(boxes, &self.box_pairs, contacts, &mut self.fast);
+        others.clear();
+        for &(first, second) in pairs {
+            let list = match (boxes.kind(first), boxes.kind(second)) {
+                (Kind::Cuboid, Kind::Cuboid) => &mut *box_pairs,
+                (Kind::HalfSpace, Kind::Cuboid) | (Kind::Cuboid, Kind::HalfSpace) => &mut *ground_pairs,
+                _ => &mut *other_pairs,
+            };
+            list.push((first, second));
+        }
+        ground_contacts(boxes, ground_pairs, contacts);
+        if ground_pairs.last() < box_pairs.first() {
+            // As mostly: the ground is the first of all bodies.
+            cuboid_contacts(boxes, box_pairs, contacts, fast);
+        } else {
+            cuboid_contacts(boxes, box_pairs, others, fast);
+            merge::insert(contacts, others);
+            others.clear();
+        }
         if !self.fast.is_empty() {
             self.other_pairs.append(&mut self.fast);
             self.other_pairs.sort_unstable();

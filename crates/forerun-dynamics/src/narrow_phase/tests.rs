@@ -1,11 +1,11 @@
 //! The eight-lane kernel against the scalar reference of the geometry crate.
 
-use forerun_geometry::contact::cuboid_cuboid;
+use forerun_geometry::contact::{contact_manifolds, cuboid_cuboid};
 use forerun_geometry::shape::Cuboid;
-use forerun_geometry::{Pose, Quat, Shape, Vec3};
+use forerun_geometry::{Placed, Pose, Quat, Shape, Vec3};
 
 use super::cuboids::{Boxes, cuboid_contacts};
-use super::{FAST, Outlook};
+use super::{FAST, Outlook, find_contacts};
 use crate::bounds::{Prospect, pair_margin};
 use crate::{Body, BodyDef, BodyId, Environment, Member};
 
@@ -89,4 +89,59 @@ fn eight_lanes_find_the_manifolds_of_the_reference() {
     assert!((300..1500).contains(&quick), "{quick} pairs are fast");
     // Ties between axes or corners fall either way by rounding, in one pair of a hundred at most: half of the boxes are nearly aligned.
     assert!(differing <= 30, "{differing} manifolds differ");
+}
+
+/// Boxes in, on and over a ground that is level or not, before and after it in the order of bodies.
+#[test]
+fn eight_boxes_on_the_ground_touch_as_one_does() {
+    let mut r = Random(5);
+    let mut defs = Vec::new();
+    for i in 0..600 {
+        let half_extents = Vec3::splat(0.7) + r.vector(0.5);
+        let mut pose = r.pose(0.9);
+        let ground = i % 100 == 50;
+        if ground {
+            pose = Pose::new(r.vector(0.3), Quat::from_xyzw(r.between(-0.3, 0.3), 0.2, 0.1, 1.0).normalize());
+        }
+        let def = if ground {
+            BodyDef::fixed(Shape::HalfSpace)
+        } else {
+            BodyDef::new(Shape::Cuboid(Cuboid { half_extents }))
+        };
+        defs.push(BodyDef { pose, velocity: r.vector(3.0), angular_velocity: r.vector(1.0), ..def });
+    }
+    let bodies: Vec<_> = defs.iter().map(|def| Body::new(def).unwrap()).collect();
+    let members: Vec<Member> = (bodies.iter().enumerate())
+        .map(|(i, (body, state))| Member { id: BodyId(i as u32), body, state: *state })
+        .collect();
+    let pairs: Vec<(u32, u32)> = (0..6u32)
+        .flat_map(|g| (0..600).filter(|i| i % 100 != 50).map(move |i| (100 * g + 50, i)))
+        .map(|(a, b)| (a.min(b), a.max(b)))
+        .collect::<std::collections::BTreeSet<_>>()
+        .into_iter()
+        .collect();
+    let environment = Environment::default();
+    let mut found = find_contacts(&members, &pairs, &environment).into_iter().peekable();
+    let mut points = [0; 5];
+    for pair in pairs {
+        let placed = |i: u32| {
+            let member = &members[i as usize];
+            let prospect = Prospect::new(member.body, &member.state, &environment);
+            (Placed { shape: &member.body.shape, pose: prospect.pose, motion: prospect.motion }, prospect)
+        };
+        let ((a, pa), (b, pb)) = (placed(pair.0), placed(pair.1));
+        let mut reference = Vec::new();
+        contact_manifolds(&a, &b, pair_margin(&pa, &pb, &environment), &mut reference);
+        let ours = found.next_if(|c| (c.first, c.second) == pair).map(|c| c.manifold);
+        assert_eq!(ours.is_some(), !reference.is_empty(), "{pair:?}");
+        let (Some(ours), Some(reference)) = (ours, reference.first()) else { continue };
+        points[ours.count as usize] += 1;
+        assert_eq!(ours.count, reference.count, "{pair:?}");
+        for (x, y) in ours.points().iter().zip(reference.points()) {
+            assert!((x.position - y.position).length() < 1e-5, "{pair:?}: {x:?} {y:?}");
+            assert!((x.normal - y.normal).length() < 1e-6 && (x.separation - y.separation).abs() < 1e-5);
+        }
+    }
+    assert!(found.next().is_none());
+    assert!(points[1..].iter().all(|&count| count > 20), "{points:?}");
 }

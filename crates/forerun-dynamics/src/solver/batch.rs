@@ -5,9 +5,9 @@
 use forerun_geometry::{Manifold, Shape, Vec3};
 
 use super::arrange::{Arranger, Order};
-use super::blocks::{Arranged, Class};
+use super::blocks::Class;
 use super::bodies::Bodies;
-use super::collisions::Moving;
+use super::collisions::{Ahead, Moving};
 use super::contact_graph::ContactGraph;
 use super::descent::{Descent, Sweeps};
 use super::energy_guard::{EnergyGuard, Guarded, Guarding};
@@ -15,14 +15,16 @@ use super::impulses::ImpulseSums;
 use super::islands::Islands;
 use super::load::{LoadPass, Loads, Strain};
 use super::manifolds::Source;
-use super::positions::moved;
+use super::positions::integrate_positions;
 use super::prepare::{Common, prepare};
-use super::rest::{Ending, Resting};
+use super::rest::{Ending, RestScratch, Resting};
 use super::rows::Rows;
 use super::standing::StandingPass;
 use super::substep::{displace, fall, note_pushes};
 use super::sweep::Law;
+use super::team::Team;
 use super::velocities::integrate_velocities;
+use crate::lanes::{Row, cells};
 use crate::narrow_phase::Contact;
 use crate::scratch::{emptied, fill};
 use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
@@ -47,6 +49,12 @@ const OVERLAPPING: f32 = 2.0;
 /// So many more passes push the overlap out of islands that overlap, and of hard ones. A dropped stack of 20 comes to rest after 125 frames instead of
 /// 273, a Jenga tower that starts 5 cm in the ground with overlaps of 1.6 mm instead of 5.7.
 const MORE_PUSHES: usize = 2;
+
+/// Nobody asks for overlaps that grow by less. Metres.
+const SHALLOW_M: f32 = 0.001;
+
+/// Threads that work at one island, at most.
+const SHARES_MAX: usize = 16;
 
 /// A contact of a batch: who touches, and where that is written.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +91,11 @@ struct IslandSums {
     mass: f64,
     /// Twice the energy of the centres of mass.
     motion: f64,
+    contacts: u32,
+    /// The highest level of a body that something supports.
+    top: u32,
+    /// The deepest overlap. Metres.
+    overlap: f32,
 }
 
 impl IslandSums {
@@ -94,13 +107,25 @@ impl IslandSums {
         self.motion += mass * f64::from(member.state.velocity.length_squared());
     }
 
-    fn is_hard(&self) -> bool {
-        self.lost > HARD_PART * self.weight
+    /// What the island needs; it overlaps where some contact is deeper than `deep`.
+    fn class(&self, deep: f32) -> Class {
+        if self.lost <= HARD_PART * self.weight {
+            if self.overlap > deep { Class::Overlapping } else { Class::Easy }
+        } else if self.motion > SLOW * SLOW * self.mass {
+            Class::Rushing
+        } else if self.contacts <= DELICATE_CONTACTS && self.top >= DELICATE_LEVELS {
+            Class::Delicate
+        } else {
+            Class::Heap
+        }
     }
+}
 
-    fn is_slow(&self) -> bool {
-        self.motion < SLOW * SLOW * self.mass
-    }
+/// Whether all points of every manifold of an island push the same way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Evenness {
+    Flat,
+    Uneven,
 }
 
 /// Some islands, with the bodies that do not yield but that they touch. Kept from step to step for its memory.
@@ -121,6 +146,8 @@ pub(crate) struct Batch<'a> {
     /// By member: the state at the end.
     pub(crate) next: Vec<BodyState>,
     bodies: Bodies,
+    /// The least separation of any point after the last substep. Metres.
+    least_gap: f32,
     dynamic: Vec<bool>,
     graph: ContactGraph,
     loads: Loads,
@@ -128,11 +155,19 @@ pub(crate) struct Batch<'a> {
     arranger: Arranger,
     guard: EnergyGuard,
     descent: Descent,
-    spins: Vec<Vec3>,
     endings: Vec<Ending>,
+    rest: RestScratch,
     bounces: bool,
     /// By island: whether a moving kinematic body touches it.
     driven: Vec<bool>,
+    /// By island.
+    sums: Vec<IslandSums>,
+    /// By island: see [`Batch::classify`].
+    classes: Vec<(Class, Evenness)>,
+    /// By evenness and class: the contacts.
+    chosen: [[Vec<u32>; Class::COUNT]; 2],
+    /// By contact: by how much the solver expects it to lie deeper at the end of the frame, where that may be cut finer. Metres.
+    pub(crate) overlap_growth: Vec<f32>,
 }
 
 impl<'a> Batch<'a> {
@@ -159,6 +194,7 @@ impl<'a> Batch<'a> {
             impulses: self.impulses,
             next: self.next,
             bodies: self.bodies,
+            least_gap: 0.0,
             dynamic: self.dynamic,
             graph: self.graph,
             loads: self.loads,
@@ -166,10 +202,14 @@ impl<'a> Batch<'a> {
             arranger: self.arranger,
             guard: self.guard,
             descent: self.descent,
-            spins: self.spins,
             endings: self.endings,
+            rest: self.rest,
             bounces: false,
             driven: self.driven,
+            sums: self.sums,
+            classes: self.classes,
+            chosen: self.chosen,
+            overlap_growth: self.overlap_growth,
         }
     }
 
@@ -189,9 +229,7 @@ impl<'a> Batch<'a> {
 
     /// Stage 2: springs, gyroscopic term, accelerations.
     pub(crate) fn integrate_velocities(&mut self) {
-        self.bodies = Bodies::gather(&self.members, &self.environment);
-        self.spins =
-            integrate_velocities(&self.members, &mut self.bodies, self.environment.settings.frame_seconds);
+        integrate_velocities(&mut self.bodies, &self.members, &self.environment);
     }
 
     /// Stage 3: levels, load, rows.
@@ -222,70 +260,65 @@ impl<'a> Batch<'a> {
 
     /// Finds a lane for every contact: flat islands apart from uneven ones, and each class by itself.
     fn arrange(&mut self) {
-        let kinds = self.kinds();
-        let mut chosen: [Vec<u32>; 2 * Class::COUNT] = Default::default();
+        self.classify();
+        let mut chosen = std::mem::take(&mut self.chosen);
+        chosen.iter_mut().flatten().for_each(Vec::clear);
         for (k, ends) in self.ends.iter().enumerate() {
-            let (class, uneven) = kinds[self.island_of(ends)];
-            chosen[class as usize + if uneven { Class::COUNT } else { 0 }].push(k as u32);
+            let (class, evenness) = self.classes[self.island_of(ends)];
+            chosen[evenness as usize][class as usize].push(k as u32);
         }
         let order = Order { graph: &self.graph, contacts: &self.ends, yields: &self.dynamic };
         let (arranger, Rows { flat, uneven }) = (&mut self.arranger, &mut self.rows);
-        let (of_flat, of_uneven) = chosen.split_at(Class::COUNT);
         arranger.begin(self.members.len());
         flat.clear();
-        for (chosen, class) in of_flat.iter().zip(0..) {
+        for (class, chosen) in chosen[Evenness::Flat as usize].iter().enumerate() {
             arranger.add(chosen, &order, flat);
             flat.ends[class] = flat.count;
         }
         flat.finish();
         uneven.clear();
-        for (chosen, class) in of_uneven.iter().zip(0..) {
+        for (class, chosen) in chosen[Evenness::Uneven as usize].iter().enumerate() {
             arranger.add(chosen, &order, uneven);
             uneven.ends[class] = uneven.count;
         }
         uneven.finish();
+        let threads = rayon::current_num_threads().min(SHARES_MAX);
+        flat.share_out(threads, self.members.len());
+        uneven.share_out(threads, self.members.len());
+        self.bodies.add_unread(self.rows.share_count());
+        self.chosen = chosen;
     }
 
-    /// By island: what it needs, and whether some manifold has points that push different ways, which only those of meshes do.
-    fn kinds(&self) -> Vec<(Class, bool)> {
-        let mut sums = vec![IslandSums::default(); self.islands.count() + 1];
+    /// Finds the class of each island, and whether some manifold has points that push different ways, which only those of meshes do.
+    fn classify(&mut self) {
+        fill(&mut self.sums, self.islands.count() + 1, IslandSums::default());
         for (i, (strain, member)) in self.loads.strain.iter().zip(&self.members).enumerate() {
             if member.body.is_dynamic() {
-                sums[self.islands.root(i)].add(strain, member);
+                self.sums[self.islands.root(i)].add(strain, member);
             }
         }
-        // How high the island is.
-        let mut top = vec![0; self.islands.count() + 1];
         for &i in &self.graph.order {
-            let island = self.islands.root(i as usize);
-            top[island] = top[island].max(self.graph.levels()[i as usize]);
+            let top = &mut self.sums[self.islands.root(i as usize)].top;
+            *top = (*top).max(self.graph.levels()[i as usize]);
         }
-        // How many contacts, and the deepest overlap.
-        let mut size = vec![(0u32, 0.0f32); self.islands.count() + 1];
         for (ends, separation) in self.ends.iter().zip(self.graph.deepest()) {
-            let size = &mut size[self.island_of(ends)];
-            *size = (size.0 + 1, size.1.max(-separation));
+            let sums = &mut self.sums
+                [self.islands.root(ends.first as usize).min(self.islands.root(ends.second as usize))];
+            sums.contacts += 1;
+            sums.overlap = sums.overlap.max(-separation);
         }
         let deep = OVERLAPPING * self.environment.settings.overlap_allowed_m;
-        let class = |((sums, (contacts, overlap)), top): ((IslandSums, _), _)| match sums.is_hard() {
-            true if !sums.is_slow() => Class::Rushing,
-            true if contacts <= DELICATE_CONTACTS && top >= DELICATE_LEVELS => Class::Delicate,
-            true => Class::Heap,
-            false if overlap > deep => Class::Overlapping,
-            false => Class::Easy,
-        };
-        let mut kinds: Vec<(Class, bool)> =
-            sums.into_iter().zip(size).zip(top).map(|of| (class(of), false)).collect();
+        self.classes.clear();
+        self.classes.extend(self.sums.iter().map(|sums| (sums.class(deep), Evenness::Flat)));
         if self.members.iter().any(|m| is_mesh(&m.body.shape)) {
             for (k, ends) in self.ends.iter().enumerate() {
-                let manifold = self.contacts().manifold(k);
-                let points = &manifold.points[..manifold.count as usize];
+                let points = self.contacts().manifold(k).points();
                 if points.iter().any(|p| p.normal != points[0].normal) {
-                    kinds[self.island_of(ends)].1 = true;
+                    let island = self.island_of(ends);
+                    self.classes[island].1 = Evenness::Uneven;
                 }
             }
         }
-        kinds
     }
 
     /// The number of the island that a contact belongs to.
@@ -300,48 +333,48 @@ impl<'a> Batch<'a> {
         let h = self.substep_seconds();
         let at = Guarding { islands: &self.islands, driven: &self.driven };
         let (rows, bodies, impulses) = (&mut self.rows, &mut self.bodies, &mut self.impulses);
-        let mut standing =
-            StandingPass { guard: &mut self.guard, descent: &mut self.descent, at, kicks: &bodies.kicks };
-        let efforts = [
-            (Class::Rushing, RUSHING_SWEEPS.min(settings.first_sweeps_hard)),
-            (Class::Heap, settings.first_sweeps_hard),
-            (Class::Delicate, DELICATE_SWEEPS),
-        ];
-        for (class, sweeps) in efforts {
-            let chosen = rows.flat.of(class);
-            let Arranged { blocks, details, .. } = &mut rows.flat;
-            standing.run(&mut blocks[chosen.clone()], &mut details[chosen], sweeps);
-            let chosen = rows.uneven.of(class);
-            let Arranged { blocks, details, .. } = &mut rows.uneven;
-            standing.run(&mut blocks[chosen.clone()], &mut details[chosen], sweeps);
-        }
-        for substep in 0..settings.substeps {
-            if self.bounces {
-                rows.resolve_collisions(&mut moving(bodies, &settings, impulses));
+        let least_gap = &mut self.least_gap;
+        let (guard, descent) = (&mut self.guard, &mut self.descent);
+        let mut standing = StandingPass { guard, descent, at, kicks: &bodies.kicks };
+        let hard = settings.first_sweeps_hard;
+        rows.stand(Class::Rushing, &mut standing, hard.min(RUSHING_SWEEPS));
+        rows.stand(Class::Heap, &mut standing, hard);
+        rows.stand(Class::Delicate, &mut standing, DELICATE_SWEEPS);
+        let (guard, descent, bounces) = (&mut self.guard, &mut self.descent, self.bounces);
+        Team::gather(rows.share_count(), |team| {
+            for substep in 0..settings.substeps {
+                if bounces {
+                    let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
+                    let ahead = ahead(displacements, kicks, &settings, bounces);
+                    let velocities = cells(velocities);
+                    rows.resolve_collisions(&mut Moving { velocities, ahead, bounced: &mut *impulses });
+                }
+                if substep == 1 {
+                    rows.remove_momentum(&mut bodies.pushes);
+                }
+                fall(bodies);
+                if substep == 0 {
+                    rows.apply_impulses(&mut bodies.velocities, team);
+                }
+                let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
+                keep_energy(guard, at, rows, bodies, guess);
+                for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
+                    rows.sweep(&mut bodies.velocities, team);
+                }
+                let sweeps = Sweeps { count: DELICATE_SUBSTEP_SWEEPS, law: Law::Coulomb };
+                rows.descend(descent, at, &mut bodies.velocities, sweeps);
+                keep_energy(guard, at, rows, bodies, Guarded::Result);
+                displace(bodies, h);
+                let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
+                let ahead = ahead(displacements, kicks, &settings, bounces);
+                *least_gap = rows.relax(velocities, &ahead, team);
+                note_pushes(bodies);
+                rows.add_impulses(impulses);
+                if settings.shock_propagation == ShockPropagation::Classic {
+                    rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
+                }
             }
-            if substep == 1 {
-                rows.remove_momentum(&mut bodies.pushes);
-            }
-            fall(bodies);
-            if substep == 0 {
-                rows.apply_impulses(&mut bodies.velocities);
-            }
-            let guess = if substep == 0 { Guarded::FirstGuess } else { Guarded::Guess };
-            keep_energy(&mut self.guard, at, rows, bodies, guess);
-            for _ in 0..if substep == 0 { settings.first_sweeps } else { 1 } {
-                rows.sweep(&mut bodies.velocities);
-            }
-            let sweeps = Sweeps { count: DELICATE_SUBSTEP_SWEEPS, law: Law::Coulomb };
-            rows.descend(&mut self.descent, at, &mut bodies.velocities, sweeps);
-            keep_energy(&mut self.guard, at, rows, bodies, Guarded::Result);
-            displace(bodies, h);
-            rows.relax(&mut moving(bodies, &settings, &mut []), self.bounces);
-            note_pushes(bodies);
-            rows.add_impulses(impulses);
-            if settings.shock_propagation == ShockPropagation::Classic {
-                rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
-            }
-        }
+        });
     }
 
     /// Finds the islands that a moving kinematic body touches.
@@ -363,22 +396,25 @@ impl<'a> Batch<'a> {
     /// Stage 5: remaining overlap is pushed out, level by level.
     pub(crate) fn propagate_shock(&mut self) {
         let settings = self.environment.settings;
-        let push_max = settings.recovery_speed_max * settings.frame_seconds;
-        let displacements = &mut self.bodies.displacements;
-        // Meshes overlap in many points at once and need a second pass. Mesh islands have batches of their own.
-        let meshes = self.members.iter().any(|m| m.body.is_dynamic() && is_mesh(&m.body.shape));
-        let passes = if meshes { 2 } else { 1 };
-        for _ in 0..passes {
-            self.rows.propagate_shock(Class::Easy..=Class::Easy, displacements, &settings, push_max);
+        if self.least_gap + settings.overlap_allowed_m >= 0.0 {
+            // Nobody is pushed, and so nobody comes to overlap.
+            return;
         }
-        for _ in 0..passes + MORE_PUSHES {
-            self.rows.propagate_shock(
-                Class::Overlapping..=Class::Delicate,
-                displacements,
-                &settings,
-                push_max,
-            );
+        let pushes = self.pushes();
+        let (rows, displacements) = (&mut self.rows, &mut self.bodies.displacements);
+        Team::gather(rows.share_count(), |team| {
+            for _ in 0..pushes {
+                rows.propagate_shock(displacements, &settings, team);
+            }
+        });
+        for _ in 0..MORE_PUSHES {
+            rows.propagate_more_shock(displacements, &settings);
         }
+    }
+
+    /// Meshes overlap in many points at once and need a second pass. Mesh islands have batches of their own.
+    fn pushes(&self) -> usize {
+        if self.members.iter().any(|m| m.body.is_dynamic() && is_mesh(&m.body.shape)) { 2 } else { 1 }
     }
 
     /// Stage 6: new states.
@@ -392,19 +428,21 @@ impl<'a> Batch<'a> {
             driven: &self.driven,
             environment,
         };
-        at.find_endings(&self.spins, &mut self.endings);
-        let bodies = &self.bodies;
-        let moves = |(i, m): (usize, &Member)| moved(m, bodies, i, &self.endings[i], environment);
-        self.next.clear();
-        self.next.extend(members.iter().enumerate().map(moves));
-        at.settle(&mut self.next, &self.endings);
+        at.find_endings(&mut self.endings);
+        integrate_positions(members, &self.bodies, environment, &mut self.next);
+        at.settle(&mut self.next, &self.endings, &mut self.rest);
+        if environment.settings.slices_max > 1 {
+            self.find_overlap_growth();
+        }
     }
 
-    /// For each contact: by how much the solver expects it to lie deeper at the end of the frame. Metres.
-    pub(crate) fn overlap_growth(&self) -> Vec<f32> {
-        let mut growth = vec![0.0; self.ends.len()];
-        self.rows.overlap_growth(&self.bodies.displacements, &mut growth);
-        growth
+    /// For each contact: by how much the solver expects it to lie deeper at the end of the frame, or 0 if all of them by less than [`SHALLOW_M`].
+    fn find_overlap_growth(&mut self) {
+        fill(&mut self.overlap_growth, self.ends.len(), 0.0);
+        let least = self.least_gap;
+        if least < -SHALLOW_M || least + self.environment.settings.overlap_allowed_m < 0.0 {
+            self.rows.overlap_growth(&self.bodies.displacements, &mut self.overlap_growth);
+        }
     }
 }
 
@@ -413,15 +451,19 @@ pub(crate) fn is_mesh(shape: &Shape) -> bool {
     matches!(shape, Shape::Mesh(_))
 }
 
-/// What the kernels that look ahead need of the bodies.
-fn moving<'a>(bodies: &'a mut Bodies, settings: &StepSettings, bounced: &'a mut [[f32; 4]]) -> Moving<'a> {
-    Moving {
-        velocities: &mut bodies.velocities,
-        displacements: &bodies.displacements,
-        kicks: &bodies.kicks,
+/// What the kernels that look ahead need.
+fn ahead<'a>(
+    displacements: &'a [Row],
+    kicks: &'a [Row],
+    settings: &StepSettings,
+    bounces: bool,
+) -> Ahead<'a> {
+    Ahead {
+        displacements,
+        kicks,
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
-        bounced,
+        bounces,
     }
 }
 

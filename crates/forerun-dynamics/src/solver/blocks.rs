@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use super::points::{Kind, Point, Side};
+use super::shares::Shares;
 use crate::lanes::{LANES, LaneMask, Lanes, Portable, Record, V8};
 
 /// Padding: a lane without a contact.
@@ -201,6 +202,8 @@ pub(crate) struct Arranged<K: Kind> {
     pub(crate) runs: Vec<u32>,
     /// How many blocks have been added; the others are memory to be used again.
     pub(crate) count: usize,
+    /// Which thread does which blocks; none where one does them all.
+    pub(crate) shares: Shares,
 }
 
 impl<K: Kind> Arranged<K> {
@@ -218,6 +221,7 @@ impl<K: Kind> Arranged<K> {
         self.ends = [0; Class::COUNT];
         self.count = 0;
         self.runs.clear();
+        self.shares.clear();
     }
 
     /// Makes room for so many more blocks at once.

@@ -3,128 +3,90 @@
 //! A velocity is stored as `u = (v / sqrt(1/m), sqrt(I) Rᵀ ω)`, so that kinetic energy is `|u|² / 2`, and a contact row needs
 //! neither masses nor inertia tensors: its Jacobian serves both to read velocities and to apply impulses.
 
-use forerun_geometry::{Mat3, Vec3};
+use forerun_geometry::Vec3;
 
-use crate::lanes::Row;
-use crate::{BodyKind, Environment, Member};
+use crate::lanes::{LANES, Lanes, Row};
+use crate::scratch::fill;
 
-/// The moving quantities of a batch, one row a body, one more for a dummy that pads the lanes, and where they are written one that nobody reads.
+/// The moving quantities of a batch, one row a body. After the last body comes a dummy that pads the lanes, then the row that is written for what does
+/// not move and that nobody reads, then rows that fill the last eight.
 #[derive(Debug, Default)]
 pub(crate) struct Bodies {
-    /// Centre of mass (3), square root of the inverse mass, of the inverse inertia (3), 1 if impulses move the body.
+    /// Centre of mass (3), square root of the inverse mass, of the inverse inertia (3), 1 if impulses move the body. Kinematic bodies have roots of 1, so
+    /// that their velocity can be read; fixed ones of 0.
     pub(crate) centres: Vec<Row>,
     /// First and second principal axis in the world (3 + 3).
     pub(crate) axes: Vec<Row>,
-    /// Mass-scaled velocity.
-    pub(crate) velocities: Vec<Row>,
-    /// Mass-scaled displacement since the start of the frame.
-    pub(crate) displacements: Vec<Row>,
+    /// Static and kinetic friction, restitution, half thickness, inverse mass.
+    pub(crate) surfaces: Vec<Row>,
     /// Mass-scaled change of velocity by gravity, forces and torques in a substep.
     pub(crate) kicks: Vec<Row>,
+    /// Mass-scaled velocity.
+    pub(crate) velocities: Vec<Row>,
     /// Velocities of the running substep before any impulse.
     pub(crate) free: Vec<Row>,
     /// What impulses did to the velocities in the last substep.
     pub(crate) pushes: Vec<Row>,
-    /// Static and kinetic friction, restitution, half thickness, inverse mass.
-    pub(crate) surfaces: Vec<Row>,
+    /// Mass-scaled displacement since the start of the frame.
+    pub(crate) displacements: Vec<Row>,
+    /// By body: the angular velocity in the world that the contacts start from. rad/s
+    pub(crate) spins: Vec<Vec3>,
+    /// Bodies that a spring pulls.
+    pub(crate) pulled: Vec<u32>,
 }
 
-/// Scale factors of one body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Scale {
-    pub(crate) linear: f32,
-    pub(crate) angular: Vec3,
-    pub(crate) axes: Mat3,
-}
-
-impl Scale {
-    /// Kinematic bodies have a scale of 1, so that their velocity can be read; fixed ones of 0.
-    pub(crate) fn of(member: &Member) -> Scale {
-        let body = member.body;
-        let axes = member.state.pose().axes();
-        match body.kind {
-            BodyKind::Dynamic => {
-                let i = body.inverse_inertia;
-                let angular = Vec3::new(i.x.sqrt(), i.y.sqrt(), i.z.sqrt());
-                Scale { linear: body.inverse_mass.sqrt(), angular, axes }
-            }
-            BodyKind::Kinematic => Scale { linear: 1.0, angular: Vec3::ONE, axes },
-            BodyKind::Fixed => Scale { linear: 0.0, angular: Vec3::ZERO, axes },
+impl Bodies {
+    /// Makes room for so many bodies. Displacements and pushes are none yet.
+    pub(crate) fn begin(&mut self, count: usize) {
+        let rows = (count + 2).next_multiple_of(LANES);
+        for list in [
+            &mut self.centres,
+            &mut self.axes,
+            &mut self.surfaces,
+            &mut self.kicks,
+            &mut self.velocities,
+            &mut self.free,
+        ] {
+            list.resize(rows, Row::default());
         }
-    }
-
-    /// World velocity and angular velocity to a row. Zero for fixed bodies.
-    pub(crate) fn to_row(self, velocity: Vec3, angular_velocity: Vec3) -> Row {
-        if self.linear == 0.0 {
-            return Row::default();
-        }
-        let v = velocity / self.linear;
-        let w = (self.axes.transpose() * angular_velocity) / self.angular;
-        Row([v.x, v.y, v.z, w.x, w.y, w.z, 0.0, 0.0])
-    }
-
-    /// A row in the world: velocity and angular velocity, or displacement and rotation vector.
-    pub(crate) fn world_of(self, row: &Row) -> (Vec3, Vec3) {
-        let r = &row.0;
-        let linear = Vec3::new(r[0], r[1], r[2]) * self.linear;
-        let angular = self.axes * (Vec3::new(r[3], r[4], r[5]) * self.angular);
-        (linear, angular)
+        fill(&mut self.pushes, rows, Row::default());
+        fill(&mut self.displacements, rows, Row::default());
+        self.spins.resize(count, Vec3::ZERO);
+        self.pulled.clear();
     }
 }
 
 impl Bodies {
-    /// The rows of all members; velocities are filled in by the stage that integrates them.
-    pub(crate) fn gather(members: &[Member], environment: &Environment) -> Bodies {
-        let n = members.len();
-        let h = environment.settings.frame_seconds / environment.settings.substeps as f32;
-        let mut bodies = Bodies {
-            centres: Vec::with_capacity(n + 2),
-            axes: Vec::with_capacity(n + 2),
-            velocities: vec![Row::default(); n + 2],
-            displacements: vec![Row::default(); n + 2],
-            kicks: Vec::with_capacity(n + 2),
-            free: vec![Row::default(); n + 2],
-            pushes: vec![Row::default(); n + 2],
-            surfaces: Vec::with_capacity(n + 2),
-        };
-        for member in members {
-            let scale = Scale::of(member);
-            let (p, s, i, m) = (member.state.position, scale.linear, scale.angular, scale.axes);
-            let answers = if member.body.is_dynamic() { 1.0 } else { 0.0 };
-            bodies.centres.push(Row([p.x, p.y, p.z, s, i.x, i.y, i.z, answers]));
-            let (a, b) = (m.x_axis, m.y_axis);
-            bodies.axes.push(Row([a.x, a.y, a.z, b.x, b.y, b.z, 0.0, 0.0]));
-            bodies.kicks.push(Row(acceleration(member, scale, environment).0.map(|x| x * h)));
-            let (b, m) = (member.body, member.body.material);
-            bodies.surfaces.push(Row([
-                m.static_friction,
-                m.friction,
-                m.restitution,
-                b.half_thickness,
-                b.inverse_mass,
-                0.0,
-                0.0,
-                0.0,
-            ]));
+    /// Makes room for so many rows that are written and not read, where there was one.
+    pub(crate) fn add_unread(&mut self, count: usize) {
+        let rows = self.kicks.len() - 1 + count;
+        for list in
+            [&mut self.velocities, &mut self.displacements, &mut self.kicks, &mut self.free, &mut self.pushes]
+        {
+            list.resize(rows, Row::default());
         }
-        for _ in 0..2 {
-            bodies.centres.push(Row::default());
-            bodies.axes.push(Row([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]));
-            bodies.kicks.push(Row::default());
-            bodies.surfaces.push(Row::default());
-        }
-        bodies
     }
 }
 
-fn acceleration(member: &Member, scale: Scale, environment: &Environment) -> Row {
-    let body = member.body;
-    if !body.is_dynamic() {
-        return Row::default();
+/// The indices of eight rows that follow each other.
+#[inline(always)]
+pub(crate) fn eight_from(start: usize) -> [u32; LANES] {
+    let mut index = [0; LANES];
+    for lane in 0..LANES {
+        index[lane] = (start + lane) as u32;
     }
-    let linear = body.acceleration(environment);
-    // sqrt(I) Rᵀ I⁻¹ τ = I^(-1/2) Rᵀ τ
-    let v = linear / scale.linear;
-    let w = (scale.axes.transpose() * body.torque) * scale.angular;
-    Row([v.x, v.y, v.z, w.x, w.y, w.z, 0.0, 0.0])
+    index
+}
+
+/// A number of each of eight bodies.
+pub(crate) type Column = [f32; LANES];
+
+/// Whether lane `i` is bit `i` of the mask, as 1 or 0.
+#[inline(always)]
+pub(crate) fn flags<F: Lanes>(bits: u32) -> F {
+    let mut column = [0.0; LANES];
+    for lane in 0..LANES {
+        column[lane] = (bits >> lane & 1) as f32;
+    }
+    F::from_array(column)
 }

@@ -3,6 +3,8 @@
 //! A contact collides when it approaches and will close within the substep. A body at rest has no velocity before gravity, so that it
 //! does not bounce, whatever its restitution. What gravity adds in one frame counts as rest: a speed that shrinks with the frame, no threshold of its own.
 
+use std::cell::Cell;
+
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
 use super::impulses;
 use super::points::{Kind, Point, Push};
@@ -17,15 +19,23 @@ const POINT_ROUNDS: usize = 2;
 
 /// Velocities and displacements of the bodies, and what the substep will add.
 pub(crate) struct Moving<'a> {
-    pub(crate) velocities: &'a mut [Row],
+    pub(crate) velocities: &'a [Cell<Row>],
+    pub(crate) ahead: Ahead<'a>,
+    /// Where bounces are added up; empty where nobody asks.
+    pub(crate) bounced: &'a mut [[f32; 4]],
+}
+
+/// How far the bodies have come, and what will move them.
+#[derive(Clone, Copy)]
+pub(crate) struct Ahead<'a> {
     pub(crate) displacements: &'a [Row],
     /// Mass-scaled change of velocity that gravity and forces will make in the substep.
     pub(crate) kicks: &'a [Row],
     pub(crate) substep_seconds: f32,
     /// How many substeps a frame has.
     pub(crate) substeps: f32,
-    /// Where bounces are added up; empty where nobody asks.
-    pub(crate) bounced: &'a mut [[f32; 4]],
+    /// Whether any contact may bounce.
+    pub(crate) bounces: bool,
 }
 
 dispatched! {
@@ -63,9 +73,9 @@ fn resolve_lanes<F: Lanes, K: Kind>(
 fn collide<F: Lanes, K: Kind>(block: &Block<F, K>, detail: &Detail<F>, moving: &mut Moving) -> bool {
     let mut v = Sides::gather(block, moving.velocities);
     let relative = v.relative(block);
-    let moved = Sides::gather(block, moving.displacements).relative(block);
-    let kick = Sides::gather(block, moving.kicks).relative(block);
-    let h = F::splat(moving.substep_seconds);
+    let moved = Sides::gather_still(block, moving.ahead.displacements).relative(block);
+    let kick = Sides::gather_still(block, moving.ahead.kicks).relative(block);
+    let h = F::splat(moving.ahead.substep_seconds);
     let mut lacking = [F::zero(); 4];
     let mut hits = [F::zero(); 4];
     let (mut all, mut any) = (F::one(), F::zero());
@@ -76,7 +86,7 @@ fn collide<F: Lanes, K: Kind>(block: &Block<F, K>, detail: &Detail<F>, moving: &
         let kicked = point.speed(&kick);
         let ahead = separation + h * (speed + kicked);
         // Slower is what gravity does in a frame to a body that rests on the other: contact, not collision. Two that fall alike have none of it.
-        let fall = (-kicked).max(F::zero()) * F::splat(moving.substeps);
+        let fall = (-kicked).max(F::zero()) * F::splat(moving.ahead.substeps);
         let is_point = block.is_point(q);
         let hit = is_point & speed.lt(-fall) & ahead.lt(F::zero()) & detail.restitution.gt(F::zero());
         hits[q] = hit.select(F::one(), F::zero());

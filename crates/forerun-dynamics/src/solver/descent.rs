@@ -10,7 +10,7 @@ use super::energy_guard::{Guarding, per_lane};
 use super::islands::Islands;
 use super::points::Kind;
 use super::sweep::{Law, sweep_both_ways};
-use crate::lanes::{LANES, Lanes, Portable, Row};
+use crate::lanes::{LANES, Lanes, Portable, Row, cells};
 use crate::scratch::fill;
 
 /// The longest way on, in lengths of the last round.
@@ -79,14 +79,14 @@ impl Descent {
         let Hard { at, blocks, details } = islands;
         self.begin(at.islands, blocks, velocities);
         for k in 1..sweeps.count {
-            sweep_both_ways(blocks, velocities, sweeps.law);
+            sweep_both_ways(blocks, cells(velocities), sweeps.law);
             if k > 1 {
                 self.find_lengths(at, blocks, details, velocities);
                 self.go_on(at.islands, blocks, details, velocities);
             }
             self.note(blocks, velocities);
         }
-        sweep_both_ways(blocks, velocities, Law::Coulomb);
+        sweep_both_ways(blocks, cells(velocities), Law::Coulomb);
     }
 
     fn begin<K: Kind>(&mut self, islands: &Islands, blocks: &[Block<Portable, K>], velocities: &[Row]) {

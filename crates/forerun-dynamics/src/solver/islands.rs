@@ -1,7 +1,7 @@
 //! Islands: dynamic bodies joined by contacts. Fixed and kinematic bodies belong to every island that they touch, and join none.
 
 /// For each body the lowest body of its island.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Roots {
     root: Vec<u32>,
 }

@@ -8,7 +8,7 @@ use forerun_geometry::Vec3;
 
 use super::batch::ContactList;
 use super::contact_graph::ContactGraph;
-use super::pressure::{Carried, Support, fit};
+use super::pressure::{Carried, Pressure, Support};
 use crate::scratch::fill;
 use crate::{Environment, Member};
 
@@ -87,6 +87,7 @@ pub(crate) struct Loads {
     /// The points below each body, in the order of the graph.
     supports: Vec<Support>,
     starts: Vec<u32>,
+    pressure: Pressure,
 }
 
 /// A body's load.
@@ -123,7 +124,7 @@ impl LoadPass<'_> {
         }
         let mut end = loads.supports.len();
         for (&i, &start) in self.graph.order.iter().zip(&loads.starts).rev() {
-            let supports = &mut loads.supports[start as usize..end];
+            let supports = &loads.supports[start as usize..end];
             end = start as usize;
             let i = i as usize;
             let body = self.members[i].body;
@@ -138,15 +139,15 @@ impl LoadPass<'_> {
                 continue;
             }
             let Both { total, still } = loads.carried[i];
-            fit(supports, &total, &still, (1e-6 * body.radius * body.radius).max(1e-12));
-            loads.strain[i].lost = self.lost(i, supports, &still);
-            for s in supports.iter().filter(|s| !s.dropped()) {
-                let load = &mut loads.of_contact[s.contact as usize];
-                load.total[s.point as usize] = s.total * s.rise;
-                load.weight[s.point as usize] = s.still * s.rise;
+            loads.pressure.fit(supports, &total, &still, (1e-6 * body.radius * body.radius).max(1e-12));
+            loads.strain[i].lost = self.lost(i, supports, &loads.pressure, &still);
+            for (s, p) in supports.iter().zip(&loads.pressure.points).filter(|(_, p)| !p.dropped()) {
+                let load = &mut loads.of_contact[s.slot as usize / 4];
+                load.total[s.slot as usize % 4] = p.total * s.rise;
+                load.weight[s.slot as usize % 4] = p.still * s.rise;
                 let below = &mut loads.carried[s.below as usize];
-                below.total.add(s.total, s.below_x, s.below_z);
-                below.still.add(s.still, s.below_x, s.below_z);
+                below.total.add(p.total, s.below_x, s.below_z);
+                below.still.add(p.still, s.below_x, s.below_z);
             }
         }
     }
@@ -158,16 +159,16 @@ impl LoadPass<'_> {
     }
 
     /// The part of a body's load that its supports do not take: moments that do not match, and sideways forces beyond friction.
-    fn lost(&self, i: usize, supports: &[Support], still: &Carried) -> f32 {
+    fn lost(&self, i: usize, supports: &[Support], pressure: &Pressure, still: &Carried) -> f32 {
         let body = self.members[i].body;
         let (mut moment_1, mut moment_2, mut slips) = (still.moment_1, still.moment_2, 0.0);
-        for s in supports.iter().filter(|s| !s.dropped()) {
-            moment_1 -= s.still * s.x;
-            moment_2 -= s.still * s.z;
+        for (s, p) in supports.iter().zip(&pressure.points).filter(|(_, p)| !p.dropped()) {
+            moment_1 -= p.still * s.x;
+            moment_2 -= p.still * s.z;
             let steep = 1.0 - s.rise * s.rise;
             if steep > 0.0 {
                 let friction = self.friction(i, s.below as usize);
-                let slip = s.still * (steep.sqrt() - friction * s.rise).max(0.0);
+                let slip = p.still * (steep.sqrt() - friction * s.rise).max(0.0);
                 slips += slip * slip;
             }
         }
@@ -228,18 +229,26 @@ impl LoadPass<'_> {
             let there = &self.members[below].state;
             let velocity = here.velocity - there.velocity;
             let allowed = loads.allowed[below];
+            // Mostly the points share their normal.
+            let mut normal = Vec3::ZERO;
+            let (mut rise, mut descent, mut force) = (0.0, 0.0, Vec3::ZERO);
             for (q, point) in self.contacts.manifold(k).points().iter().enumerate() {
-                let rise = point.normal.dot(compass.up) * upwards;
+                if point.normal != normal {
+                    normal = point.normal;
+                    rise = normal.dot(compass.up) * upwards;
+                    // How fast the body sinks by moving along the surface that the point lies on.
+                    let along = velocity - normal * velocity.dot(normal);
+                    descent = -along.dot(compass.up);
+                    if slide != Vec3::ZERO {
+                        force = normal + slide * self.friction(i, below);
+                    }
+                }
                 if point.separation >= touch || rise < RISE_MIN {
                     continue;
                 }
-                // How fast the body sinks by moving along the surface that the point lies on.
-                let along = velocity - point.normal * velocity.dot(point.normal);
-                let descent = -along.dot(compass.up);
-                let sinks = allowed + point.separation.max(0.0) / self.substep_seconds + descent;
-                lowest = Some(lowest.map_or(sinks, |least| least.min(sinks)));
-                let force =
-                    if slide == Vec3::ZERO { slide } else { point.normal + slide * self.friction(i, below) };
+                let gap = if point.separation > 0.0 { point.separation } else { 0.0 };
+                let sinks = allowed + gap / self.substep_seconds + descent;
+                lowest = if lowest.is_some_and(|least| least <= sinks) { lowest } else { Some(sinks) };
                 let (x, z) = compass.place(point.position - here.position, force);
                 let (below_x, below_z) = compass.place(point.position - there.position, force);
                 loads.supports.push(Support {
@@ -247,13 +256,10 @@ impl LoadPass<'_> {
                     z,
                     below_x,
                     below_z,
-                    contact: link.contact,
-                    point: q as u32,
-                    below: link.body,
                     rise,
                     weight: ((touch - point.separation) / touch).clamp(1e-4, 1.0),
-                    total: 0.0,
-                    still: 0.0,
+                    below: link.body,
+                    slot: link.contact * 4 + q as u32,
                 });
             }
         }

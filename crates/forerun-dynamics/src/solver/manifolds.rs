@@ -4,7 +4,7 @@ use super::batch::ContactList;
 use super::blocks::{Detail, NO_CONTACT};
 use super::load::Load;
 use super::points::Kind;
-use crate::lanes::{LANES, LaneMask, Lanes, V8};
+use crate::lanes::{LANES, LaneMask, Lanes, V8, prefetch};
 
 /// Where the rows come from.
 #[derive(Clone, Copy)]
@@ -14,6 +14,19 @@ pub(crate) struct Source<'a> {
     pub(crate) loads: &'a [Load],
     /// By body.
     pub(crate) levels: &'a [u32],
+}
+
+impl Source<'_> {
+    /// Asks for the memory of what a block will be made from: contacts of one colour are far from each other.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, contacts: &[u32; LANES]) {
+        for &k in contacts {
+            if k != NO_CONTACT {
+                prefetch(self.contacts.manifold(k as usize));
+                prefetch(&self.loads[k as usize]);
+            }
+        }
+    }
 }
 
 /// Eight manifolds.

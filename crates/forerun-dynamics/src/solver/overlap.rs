@@ -24,7 +24,7 @@ fn growth_lanes<F: Lanes, K: Kind>(
 ) {
     let blocks = recast::<F, BlocksOf<K>>(blocks);
     for (block, detail) in blocks.iter().zip(recast::<F, DetailsOf>(details)) {
-        let moved = Sides::gather(block, displacements).relative(block);
+        let moved = Sides::gather_still(block, displacements).relative(block);
         let mut deepest = F::zero();
         for q in 0..4 {
             let start = detail.separation[q].min(F::zero());

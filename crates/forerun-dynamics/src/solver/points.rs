@@ -78,7 +78,7 @@ pub(crate) trait Point<F: Lanes>: Copy + Debug {
 /// What the manifolds of some blocks are like.
 pub(crate) trait Kind: Copy + Debug + Default {
     /// Their points.
-    type Point<F: Lanes>: Point<F>;
+    type Point<F: Lanes>: Point<F> + Send + Sync;
     /// Whether each point has a normal of its own.
     const NORMALS: bool;
 }

@@ -46,7 +46,12 @@ fn prepare_lanes<F: Lanes, K: Kind>(
     common: &Common,
 ) {
     let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
-    for (block, detail) in blocks.iter_mut().zip(recast_mut::<F, DetailsOf>(details)) {
+    let details = recast_mut::<F, DetailsOf>(details);
+    for (at, block) in blocks.iter_mut().enumerate() {
+        if let Some(next) = details.get(at + 1) {
+            source.prefetch(&next.source);
+        }
+        let detail = &mut details[at];
         let manifolds = Manifolds::gather::<K>(detail, source);
         let ends = Ends {
             first: End::gather(bodies, &block.first_row),
@@ -69,7 +74,6 @@ fn prepare_lanes<F: Lanes, K: Kind>(
         guess(block, detail, &manifolds, &middle, common.up);
     }
 }
-
 
 /// One body of each contact.
 struct End<F> {

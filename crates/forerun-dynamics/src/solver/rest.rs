@@ -9,6 +9,7 @@ use forerun_geometry::{Quat, Shape, Vec3};
 
 use super::batch::{ContactList, Ends};
 use super::islands::Islands;
+use crate::scratch::fill;
 use crate::{BodyState, Environment, Member};
 
 /// Who hardly overlaps comes to rest so many times sooner: the others are still being pushed out.
@@ -21,11 +22,9 @@ const ROOM: f32 = 1.5;
 /// A body that is farther than this from all others has nothing to rest on. Metres.
 const REST_TOUCH_M: f32 = 0.001;
 
-/// What the end of a frame needs to know about one body besides its rows.
+/// What the end of a frame needs to know about one body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ending {
-    /// The angular velocity with which the contacts started. rad/s
-    pub(crate) spin: Vec3,
     /// Deepest overlap with anybody at the start of the frame. Metres.
     pub(crate) overlap: f32,
     /// Whether it touches anybody, and is not only about to.
@@ -57,16 +56,25 @@ pub(crate) struct Resting<'a> {
     pub(crate) environment: &'a Environment,
 }
 
+/// Memory for [`Resting::settle`].
+#[derive(Debug, Default)]
+pub(crate) struct RestScratch {
+    /// By body.
+    drifting: Vec<bool>,
+    carried: Vec<bool>,
+    /// By island.
+    fixpoint: Vec<bool>,
+}
+
 impl Resting<'_> {
     /// Bodies that touch at the start of the frame, by contact, with its number.
     fn touching(&self) -> impl Iterator<Item = (usize, &Ends)> {
         self.contacts.ends.iter().enumerate().filter(|(k, _)| self.deepest[*k] < REST_TOUCH_M)
     }
 
-    /// What contacts tell of the bodies at the end of a frame that started with these spins.
-    pub(crate) fn find_endings(&self, spins: &[Vec3], endings: &mut Vec<Ending>) {
-        endings.clear();
-        endings.extend(spins.iter().map(|&spin| Ending { spin, ..Ending::default() }));
+    /// What contacts tell of the bodies at the end of a frame.
+    pub(crate) fn find_endings(&self, endings: &mut Vec<Ending>) {
+        fill(endings, self.members.len(), Ending::default());
         let settings = &self.environment.settings;
         if settings.rest_frames() == 0 {
             return;
@@ -98,21 +106,21 @@ impl Resting<'_> {
     }
 
     /// Counts the quiet frames of each body, and stops those that have come to rest.
-    pub(crate) fn settle(&self, next: &mut [BodyState], endings: &[Ending]) {
+    pub(crate) fn settle(&self, next: &mut [BodyState], endings: &[Ending], scratch: &mut RestScratch) {
         let full = self.environment.settings.rest_frames();
         if full == 0 {
             next.iter_mut().for_each(|state| state.rest = 0);
             return;
         }
-        let carried = self.carried(next);
-        let mut fixpoint = vec![true; self.islands.count() + 1];
+        self.find_carried(next, scratch);
+        let RestScratch { carried, fixpoint, .. } = scratch;
+        fill(fixpoint, self.islands.count() + 1, true);
         for (i, member) in self.members.iter().enumerate() {
             if !member.body.is_dynamic() {
                 continue;
             }
             // What a moving body carries or pushes goes with it, however slowly.
-            let taken_along = carried.as_ref().is_some_and(|carried| carried[i]);
-            let held = endings[i].touches && !self.driven[self.islands.root(i)] && !taken_along;
+            let held = endings[i].touches && !self.driven[self.islands.root(i)] && !carried[i];
             let calm = held && quiet(member, &next[i], self.environment);
             next[i].rest = if calm { counted(member, &endings[i], self.environment) } else { 0 };
             if next[i].rest < full || member.state.rest < full {
@@ -128,17 +136,19 @@ impl Resting<'_> {
         }
     }
 
-    /// Bodies that one which goes on its way takes along where they touch, if any goes on its way.
-    fn carried(&self, next: &[BodyState]) -> Option<Vec<bool>> {
-        let drifting: Vec<bool> = (self.members.iter().zip(next))
-            .map(|(m, next)| m.body.is_dynamic() && drifts(m, next, self.environment, FOLLOWS))
-            .collect();
+    /// Finds the bodies that one which goes on its way takes along where they touch.
+    fn find_carried(&self, next: &[BodyState], RestScratch { drifting, carried, .. }: &mut RestScratch) {
+        let drifts = |(m, next): (&Member, &BodyState)| {
+            m.body.is_dynamic() && drifts(m, next, self.environment, FOLLOWS)
+        };
+        drifting.clear();
+        drifting.extend(self.members.iter().zip(next).map(drifts));
+        fill(carried, self.members.len(), false);
         if !drifting.contains(&true) {
-            return None;
+            return;
         }
         let limit = DRIFT_PART * self.environment.settings.rest_speed;
         let limit2 = limit * limit;
-        let mut carried = vec![false; self.members.len()];
         for (k, e) in self.touching() {
             for (mover, other) in
                 [(e.first as usize, e.second as usize), (e.second as usize, e.first as usize)]
@@ -153,7 +163,6 @@ impl Resting<'_> {
                 }
             }
         }
-        Some(carried)
     }
 }
 

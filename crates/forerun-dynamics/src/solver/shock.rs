@@ -3,6 +3,8 @@
 //! The classic form (Guendelman et al. 2003, section 8; dissertation 2.4.7) gives what is below infinite mass and acts on velocities; it is here for
 //! comparison, see [`ShockPropagation`](crate::ShockPropagation). The usual one acts on positions alone, so that it adds no velocity.
 
+use std::cell::Cell;
+
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
 use super::points::{Kind, Point};
 use super::sides::{Jacobian, Sides};
@@ -10,13 +12,12 @@ use crate::StepSettings;
 use crate::lanes::{LaneMask, Lanes, Portable, Row, V8, dispatched, recast};
 
 dispatched! {
-    /// One pass over all blocks, on the displacements. `push_max` is the most overlap it removes, in metres.
+    /// One pass over all blocks, on the displacements.
     pub(crate) fn propagate_shock<K: Kind>(
         blocks: &[Block<Portable, K>],
         details: &[Detail<Portable>],
-        displacements: &mut [Row],
+        displacements: &[Cell<Row>],
         settings: &StepSettings,
-        push_max: f32,
     ) => propagate_lanes
 }
 
@@ -24,10 +25,11 @@ dispatched! {
 fn propagate_lanes<F: Lanes, K: Kind>(
     blocks: &[Block<Portable, K>],
     details: &[Detail<Portable>],
-    displacements: &mut [Row],
+    displacements: &[Cell<Row>],
     settings: &StepSettings,
-    push_max: f32,
 ) {
+    // The most overlap that a frame or slice removes.
+    let push_max = settings.recovery_speed_max * settings.frame_seconds;
     let blocks = recast::<F, BlocksOf<K>>(blocks);
     for (block, detail) in blocks.iter().zip(recast::<F, DetailsOf>(details)) {
         let mut d = Sides::gather(block, displacements);
@@ -44,7 +46,7 @@ fn propagate_lanes<F: Lanes, K: Kind>(
 pub(crate) fn propagate_classic<K: Kind>(
     blocks: &[Block<Portable, K>],
     details: &[Detail<Portable>],
-    velocities: &mut [Row],
+    velocities: &[Cell<Row>],
     displacements: &[Row],
     substep_seconds: f32,
 ) {
@@ -56,7 +58,7 @@ pub(crate) fn propagate_classic<K: Kind>(
         let on_first = detail.first_answers * lower(detail.first_yields, detail.second_yields);
         let on_second = detail.second_answers * lower(detail.second_yields, detail.first_yields);
         let mut v = Sides::gather(block, velocities);
-        let moved: Sides<F> = Sides::gather(block, displacements);
+        let moved: Sides<F> = Sides::gather_still(block, displacements);
         for q in 0..4 {
             let row = block.jacobian(q);
             let gap = (detail.separation[q] + moved.along(block, &row)).max(F::zero());

@@ -1,8 +1,10 @@
 //! Sides: the two bodies of eight contacts, read from their rows and written back.
 
+use std::cell::Cell;
+
 use super::blocks::Block;
 use super::points::{Kind, Point, Push, Relative, Side};
-use crate::lanes::{Lanes, Row, Twist8, V8, gather_twist, scatter_twist};
+use crate::lanes::{Lanes, Row, Twist8, V8, scatter_twist};
 
 /// The two bodies of eight contacts, mass-scaled: velocities or displacements.
 pub(crate) struct Sides<F> {
@@ -20,12 +22,21 @@ pub(crate) struct Jacobian<F> {
 
 impl<F: Lanes> Sides<F> {
     #[inline(always)]
-    pub(crate) fn gather<K: Kind>(block: &Block<F, K>, rows: &[Row]) -> Self {
-        Sides { first: gather_twist(rows, &block.first_row), second: gather_twist(rows, &block.second_row) }
+    pub(crate) fn gather<K: Kind>(block: &Block<F, K>, rows: &[Cell<Row>]) -> Self {
+        let (first, second) =
+            (F::gather_cells(rows, &block.first_row), F::gather_cells(rows, &block.second_row));
+        Sides { first: Twist8::of(first), second: Twist8::of(second) }
+    }
+
+    /// As [`Sides::gather`], of rows that nobody writes.
+    #[inline(always)]
+    pub(crate) fn gather_still<K: Kind>(block: &Block<F, K>, rows: &[Row]) -> Self {
+        let (first, second) = (F::gather(rows, &block.first_row), F::gather(rows, &block.second_row));
+        Sides { first: Twist8::of(first), second: Twist8::of(second) }
     }
 
     #[inline(always)]
-    pub(crate) fn scatter<K: Kind>(&self, block: &Block<F, K>, rows: &mut [Row]) {
+    pub(crate) fn scatter<K: Kind>(&self, block: &Block<F, K>, rows: &[Cell<Row>]) {
         scatter_twist(rows, &block.first_out, &self.first);
         scatter_twist(rows, &block.second_out, &self.second);
     }

@@ -12,7 +12,7 @@ use super::energy_guard::{EnergyGuard, Guarded, Guarding};
 use super::points::Kind;
 use super::sweep::Law;
 use super::warm_start::{add_momentum, apply_impulses, take_off_momentum};
-use crate::lanes::{Portable, Row};
+use crate::lanes::{Portable, Row, cells};
 
 /// Finds what the contacts of hard islands carry.
 pub(crate) struct StandingPass<'a> {
@@ -36,7 +36,7 @@ impl StandingPass<'_> {
         }
         take_off_momentum(blocks, details);
         let mut velocities = self.kicks.to_vec();
-        apply_impulses(blocks, &mut velocities);
+        apply_impulses(blocks, cells(&mut velocities));
         let islands = self.at.islands;
         if self.guard.gains(self.at, self.kicks, &velocities, Guarded::Guess) {
             self.guard.scale_back(islands, self.kicks, &mut velocities);

@@ -2,8 +2,10 @@
 //!
 //! What the rows of one contact do to each other is known beforehand, so that the bodies are read once, and pushed once by all rows together.
 
+use std::cell::Cell;
+
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf, Friction};
-use super::collisions::Moving;
+use super::collisions::Ahead;
 use super::points::{Kind, Point, Push};
 use super::sides::Sides;
 use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast, recast_mut};
@@ -13,7 +15,7 @@ const FREE_APPROACH: f32 = 1e6;
 
 dispatched! {
     /// One sweep over all blocks. A gap may close within the substep but not more; overlap is left to the shock propagation.
-    pub(crate) fn sweep<K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &mut [Row]) => sweep_lanes
+    pub(crate) fn sweep<K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &[Cell<Row>]) => sweep_lanes
 }
 
 /// What limits the friction of a contact.
@@ -31,7 +33,7 @@ dispatched! {
     /// A sweep down and one up, so that the two together are symmetric. Gaps as in [`sweep`].
     pub(crate) fn sweep_both_ways<K: Kind>(
         blocks: &mut [Block<Portable, K>],
-        velocities: &mut [Row],
+        velocities: &[Cell<Row>],
         law: Law,
     ) => both_ways_lanes
 }
@@ -44,13 +46,14 @@ dispatched! {
     pub(crate) fn relax<K: Kind>(
         blocks: &mut [Block<Portable, K>],
         details: &[Detail<Portable>],
-        moving: &mut Moving,
-        bounces: bool,
+        velocities: &[Cell<Row>],
+        ahead: &Ahead,
+        least_gap: &mut f32,
     ) => relax_lanes
 }
 
 #[inline(always)]
-fn sweep_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &mut [Row]) {
+fn sweep_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &[Cell<Row>]) {
     for block in recast_mut::<F, BlocksOf<K>>(blocks) {
         let mut v = Sides::gather(block, velocities);
         let allowed = block.allowed;
@@ -60,7 +63,7 @@ fn sweep_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities:
 }
 
 #[inline(always)]
-fn both_ways_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &mut [Row], law: Law) {
+fn both_ways_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &[Cell<Row>], law: Law) {
     let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
     let count = blocks.len();
     for k in 0..2 * count {
@@ -76,24 +79,30 @@ fn both_ways_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocit
 fn relax_lanes<F: Lanes, K: Kind>(
     blocks: &mut [Block<Portable, K>],
     details: &[Detail<Portable>],
-    moving: &mut Moving,
-    bounces: bool,
+    velocities: &[Cell<Row>],
+    ahead: &Ahead,
+    least_gap: &mut f32,
 ) {
     let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
-    let per_second = F::splat(1.0 / moving.substep_seconds);
+    let per_second = F::splat(1.0 / ahead.substep_seconds);
+    let mut least = F::splat(f32::MAX);
     for (block, detail) in blocks.iter_mut().zip(recast::<F, DetailsOf>(details)) {
-        let mut v = Sides::gather(block, moving.velocities);
-        let moved = Sides::gather(block, moving.displacements).relative(block);
+        let mut v = Sides::gather(block, velocities);
+        let moved = Sides::gather_still(block, ahead.displacements).relative(block);
         for q in 0..4 {
             let gap = detail.separation[q] + block.points[q].speed(&moved);
             block.allowed[q] = gap.max(F::zero()) * per_second;
+            least = block.is_point(q).select(gap, least).min(least);
         }
         let mut allowed = block.allowed;
-        if bounces {
-            spare(block, detail, &v, moving, &mut allowed);
+        if ahead.bounces {
+            spare(block, detail, &v, ahead, &mut allowed);
         }
         solve(block, &mut v, &allowed, Law::Coulomb);
-        v.scatter(block, moving.velocities);
+        v.scatter(block, velocities);
+    }
+    for gap in least.to_array() {
+        *least_gap = least_gap.min(gap);
     }
 }
 
@@ -103,7 +112,7 @@ fn spare<F: Lanes, K: Kind>(
     block: &Block<F, K>,
     detail: &Detail<F>,
     v: &Sides<F>,
-    moving: &Moving,
+    ahead: &Ahead,
     allowed: &mut [F; 4],
 ) {
     let bounces = detail.restitution.gt(F::zero());
@@ -111,10 +120,10 @@ fn spare<F: Lanes, K: Kind>(
         return;
     }
     let relative = v.relative(block);
-    let kick = Sides::gather(block, moving.kicks).relative(block);
+    let kick = Sides::gather_still(block, ahead.kicks).relative(block);
     for q in 0..4 {
         let point = &block.points[q];
-        let fall = (-point.speed(&kick)).max(F::zero()) * F::splat(moving.substeps);
+        let fall = (-point.speed(&kick)).max(F::zero()) * F::splat(ahead.substeps);
         let open = allowed[q].gt(F::zero()) & block.impulses[q].le(F::zero()) & bounces;
         let fast = point.speed(&relative).lt(-fall);
         allowed[q] = (open & fast).select(F::splat(FREE_APPROACH), allowed[q]);

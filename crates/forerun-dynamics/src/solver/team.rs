@@ -1,114 +1,17 @@
 //! Team: several threads in one large island, with the bits of one.
 //!
-//! Gauss-Seidel gives the same result whoever does the work, as long as blocks that move a common body come in their order. A run (one level, one
-//! colour) moves no body twice; [`Shares`] cuts every run into as many parts as there are threads. Contacts are ordered by body, so that a share
-//! is a region of the island, and waits for another one only where the two meet: no barrier stands between runs, only between passes.
-//!
-//! Nobody is waited for who has not come: a thread that has nothing to do in its own share goes on with one that nobody works at, and one thread alone
-//! does them all.
+//! The lead calls one pass after the other; in each, threads do the blocks of [`Shares`]. Nobody is waited for who has not come: a thread that has
+//! nothing to do in its own share goes on with one that nobody works at, and the lead alone does them all. So teams on one pool, each of which hopes
+//! for the threads of the other, cannot block each other.
 
+use std::cell::UnsafeCell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-/// Blocks of a share that are done in one go: few enough that a neighbour does not wait long, many enough to be worth the call.
-const BLOCKS_PER_PART: u32 = 8;
+use super::shares::Shares;
+
 /// Looks at what another thread is doing before the processor is given away.
 const PATIENCE: u32 = 2000;
-/// No share has touched the body yet.
-const NOBODY: (u32, u32) = (u32::MAX, 0);
-
-/// Some blocks in a row of one share, and what has to be done before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Part {
-    start: u32,
-    end: u32,
-    /// A share, and how many of its parts have to be done before.
-    after: (u32, u32),
-}
-
-/// Who does which blocks of an island, and who waits for whom.
-#[derive(Debug, Default)]
-pub(crate) struct Shares {
-    shares: Vec<Vec<Part>>,
-    /// Per body, while they are made: the share that moved it last, and how many parts that had then.
-    last: Vec<(u32, u32)>,
-    /// Per share: whether its last part may grow.
-    open: Vec<bool>,
-    /// Per share and other share: how many of the other's parts it is known to come after.
-    known: Vec<u32>,
-}
-
-impl Shares {
-    /// Shares out the blocks of `runs`, which follow each other. `bodies` tells which bodies (below `body_count`) a block moves.
-    pub(crate) fn make<I: Iterator<Item = u32> + Clone>(
-        &mut self,
-        count: usize,
-        runs: &[Range<usize>],
-        body_count: usize,
-        bodies: impl Fn(usize) -> I,
-    ) {
-        self.shares.resize(count, Vec::new());
-        self.shares.iter_mut().for_each(Vec::clear);
-        self.last.clear();
-        self.last.resize(body_count, NOBODY);
-        self.open.clear();
-        self.open.resize(count, false);
-        self.known.clear();
-        self.known.resize(count * count, 0);
-        for run in runs {
-            for block in run.clone() {
-                let share = (block - run.start) * count / run.len();
-                self.add(share, block as u32, bodies(block));
-            }
-        }
-    }
-
-    /// How many shares there are.
-    pub(crate) fn len(&self) -> usize {
-        self.shares.len()
-    }
-
-    /// The blocks of each share, in its order.
-    pub(crate) fn blocks(&self, share: usize) -> impl Iterator<Item = usize> + '_ {
-        self.shares[share].iter().flat_map(|part| part.start as usize..part.end as usize)
-    }
-
-    fn add(&mut self, share: usize, block: u32, bodies: impl Iterator<Item = u32> + Clone) {
-        let count = self.shares.len();
-        let mut waits = false;
-        for body in bodies.clone() {
-            let (other, parts) = self.last[body as usize];
-            if other == NOBODY.0 || other as usize == share {
-                continue;
-            }
-            let known = &mut self.known[share * count + other as usize];
-            if parts > *known {
-                *known = parts;
-                waits = true;
-                // What is waited for ends where it is: what follows may wait for this share.
-                self.open[other as usize] = false;
-                let start = Part { start: block, end: block, after: (other, parts) };
-                self.shares[share].push(start);
-            }
-        }
-        if waits {
-            self.open[share] = true;
-        }
-        let parts = &mut self.shares[share];
-        let grows = self.open[share]
-            && parts.last().is_some_and(|p| p.end == block && p.end - p.start < BLOCKS_PER_PART);
-        if grows {
-            parts.last_mut().expect("it was looked at").end = block + 1;
-        } else {
-            parts.push(Part { start: block, end: block + 1, after: (share as u32, 0) });
-            self.open[share] = true;
-        }
-        let here = (share as u32, parts.len() as u32);
-        for body in bodies {
-            self.last[body as usize] = here;
-        }
-    }
-}
 
 /// How far one share is in the running pass.
 #[derive(Debug, Default)]
@@ -120,36 +23,49 @@ struct Progress {
     taken: AtomicBool,
 }
 
-/// The threads that work at an island, from the first pass to the last.
-pub(crate) struct Team<'a, W> {
-    shares: &'a Shares,
+/// What is done to some blocks in a row, by a thread that has the blocks before them in its share behind it.
+type Work<'a> = &'a (dyn Fn(Range<usize>) + Sync);
+
+/// The running pass, its lifetime forgotten.
+#[derive(Clone, Copy)]
+struct Pass {
+    shares: *const Shares,
+    work: *const (dyn Fn(Range<usize>) + Sync),
+}
+
+/// The threads that work at a batch, from the first pass to the last.
+pub(crate) struct Team {
     progress: Vec<Progress>,
     /// Even between passes, odd within one; passes are told apart by it.
     epoch: AtomicU32,
-    /// What the running pass does.
-    pass: AtomicU32,
+    /// Written by the lead between passes, when nobody is inside.
+    pass: UnsafeCell<Option<Pass>>,
     /// Threads that may be looking at the running pass.
     inside: AtomicU32,
     over: AtomicBool,
-    work: W,
 }
 
-impl<W: Fn(u32, usize, Range<usize>) + Sync> Team<'_, W> {
-    /// Has `lead` call passes; each does `work(pass, share, blocks)` for all blocks, those that move a common body in their order. Threads of the
-    /// current pool help as they come. What was written in one pass is seen in the next, and by `lead` after it.
-    pub(crate) fn gather<R>(shares: &Shares, work: W, lead: impl FnOnce(&Team<W>) -> R) -> R {
+// SAFETY: `pass` is the one thing that is not made for threads. The lead writes it while the epoch is even and nobody is inside; others read it after
+// they are counted inside and have seen the epoch odd. What it points to outlives the pass: see `Team::run`.
+#[allow(unsafe_code, reason = "threads are handed work that lives on the stack of the lead")]
+unsafe impl Sync for Team {}
+
+impl Team {
+    /// Has `lead` call passes. Threads of the current pool help as they come, up to `size` with the lead.
+    pub(crate) fn gather<R>(size: usize, lead: impl FnOnce(&Team) -> R) -> R {
         let team = Team {
-            shares,
-            progress: (0..shares.len()).map(|_| Progress::default()).collect(),
+            progress: (0..size).map(|_| Progress::default()).collect(),
             epoch: AtomicU32::new(0),
-            pass: AtomicU32::new(0),
+            pass: UnsafeCell::new(None),
             inside: AtomicU32::new(0),
             over: AtomicBool::new(false),
-            work,
         };
+        if size < 2 {
+            return lead(&team);
+        }
         rayon::in_place_scope(|scope| {
             let team = &team;
-            for own in 1..shares.len().min(rayon::current_num_threads()) {
+            for own in 1..size {
                 scope.spawn(move |_| team.help(own));
             }
             // Also when `lead` panics: the others must go home.
@@ -158,23 +74,32 @@ impl<W: Fn(u32, usize, Range<usize>) + Sync> Team<'_, W> {
         })
     }
 
-    /// One pass over all blocks. To be called by the lead alone.
-    pub(crate) fn run(&self, pass: u32) {
-        self.pass.store(pass, Ordering::Relaxed);
+    /// How many threads there are at most.
+    pub(crate) fn size(&self) -> usize {
+        self.progress.len()
+    }
+
+    /// One pass: `work` on all blocks of the shares (as many as the team has threads), those that move a common body in their order. What was written
+    /// before the pass is seen in it, and what is written in it after it. To be called by the lead alone.
+    #[allow(unsafe_code, reason = "threads are handed work that lives on the stack of the lead")]
+    pub(crate) fn run(&self, shares: &Shares, work: Work) {
+        assert_eq!(shares.len(), self.size(), "one share a thread");
         for progress in &self.progress {
             progress.done.store(0, Ordering::Relaxed);
         }
+        // SAFETY: only the lifetime is left out. The pointer is followed by threads that are inside, and this function does not return before the last
+        // of them has left, nor unwinds: the lead itself is the one who would panic, and `Closing` waits then as well.
+        let work: *const (dyn Fn(Range<usize>) + Sync) =
+            unsafe { std::mem::transmute::<Work, &'static (dyn Fn(Range<usize>) + Sync)>(work) };
+        // SAFETY: the epoch is even and nobody is inside.
+        unsafe { *self.pass.get() = Some(Pass { shares, work }) };
         self.epoch.fetch_add(1, Ordering::SeqCst);
+        let _closing = Closing(self);
         let mut patience = Patience::default();
-        while !self.all_done() {
+        while !self.all_done(shares) {
             if !self.work_at_some(0) {
                 patience.wait();
             }
-        }
-        self.epoch.fetch_add(1, Ordering::SeqCst);
-        let mut patience = Patience::default();
-        while self.inside.load(Ordering::SeqCst) != 0 {
-            patience.wait();
         }
     }
 
@@ -182,11 +107,7 @@ impl<W: Fn(u32, usize, Range<usize>) + Sync> Team<'_, W> {
         let mut patience = Patience::default();
         while !self.over.load(Ordering::Acquire) {
             let epoch = self.epoch.load(Ordering::SeqCst);
-            if epoch % 2 == 0 {
-                patience.wait();
-                continue;
-            }
-            if self.enter(own, epoch) {
+            if epoch % 2 == 1 && self.enter(own, epoch) {
                 patience = Patience::default();
             } else {
                 patience.wait();
@@ -206,25 +127,29 @@ impl<W: Fn(u32, usize, Range<usize>) + Sync> Team<'_, W> {
         worked
     }
 
-    fn all_done(&self) -> bool {
-        (self.progress.iter().zip(&self.shares.shares))
-            .all(|(progress, parts)| progress.done.load(Ordering::Acquire) == parts.len() as u32)
+    fn all_done(&self, shares: &Shares) -> bool {
+        (self.progress.iter().enumerate())
+            .all(|(k, progress)| progress.done.load(Ordering::Acquire) == shares.parts(k).len() as u32)
     }
 
     /// Takes the first share that nobody has, its own before the others, and goes on with it as far as it can. Whether anything was done.
+    #[allow(unsafe_code, reason = "threads are handed work that lives on the stack of the lead")]
     fn work_at_some(&self, own: usize) -> bool {
-        let count = self.progress.len();
-        (0..count).map(|k| (own + k) % count).any(|share| self.work_at(share))
+        // SAFETY: the caller is the lead in `run`, or inside with the epoch odd: the pass is there and stays until the caller leaves.
+        let Some(pass) = (unsafe { *self.pass.get() }) else { return false };
+        // SAFETY: as above.
+        let (shares, work) = unsafe { (&*pass.shares, &*pass.work) };
+        let count = self.size();
+        (0..count).map(|k| (own + k) % count).any(|share| self.work_at(share, shares, work))
     }
 
-    fn work_at(&self, share: usize) -> bool {
-        let (progress, parts) = (&self.progress[share], &self.shares.shares[share]);
-        let finished = || progress.done.load(Ordering::Acquire) == parts.len() as u32;
-        if finished() || progress.taken.swap(true, Ordering::Acquire) {
+    fn work_at(&self, share: usize, shares: &Shares, work: Work) -> bool {
+        let (progress, parts) = (&self.progress[share], shares.parts(share));
+        let finished = progress.done.load(Ordering::Acquire) == parts.len() as u32;
+        if finished || progress.taken.swap(true, Ordering::Acquire) {
             return false;
         }
         let _free = Free(&progress.taken);
-        let pass = self.pass.load(Ordering::Relaxed);
         // Whoever had the share before has released it, and with it what it had done.
         let from = progress.done.load(Ordering::Relaxed);
         let mut done = from;
@@ -233,7 +158,7 @@ impl<W: Fn(u32, usize, Range<usize>) + Sync> Team<'_, W> {
                 break;
             }
             if part.start < part.end {
-                (self.work)(pass, share, part.start as usize..part.end as usize);
+                work(part.start as usize..part.end as usize);
             }
             done += 1;
             progress.done.store(done, Ordering::Release);
@@ -272,6 +197,19 @@ impl Patience {
             std::thread::yield_now();
         } else {
             std::hint::spin_loop();
+        }
+    }
+}
+
+/// Ends the running pass, and waits for those who are still looking at it.
+struct Closing<'a>(&'a Team);
+
+impl Drop for Closing<'_> {
+    fn drop(&mut self) {
+        self.0.epoch.fetch_add(1, Ordering::SeqCst);
+        let mut patience = Patience::default();
+        while self.0.inside.load(Ordering::SeqCst) != 0 {
+            patience.wait();
         }
     }
 }
@@ -332,7 +270,7 @@ mod tests {
 
     fn shares(count: usize, blocks: &[Vec<u32>], runs: &[Range<usize>], body_count: usize) -> Shares {
         let mut shares = Shares::default();
-        shares.make(count, runs, body_count, |b| blocks[b].iter().copied());
+        shares.make(count, runs.iter().cloned(), body_count, |b| blocks[b].iter().copied());
         shares
     }
 
@@ -340,10 +278,11 @@ mod tests {
     fn every_block_is_in_one_share() {
         let (blocks, runs) = island(1, 300, 20);
         let shares = shares(3, &blocks, &runs, 300);
-        let mut all: Vec<usize> = (0..3).flat_map(|s| shares.blocks(s).collect::<Vec<_>>()).collect();
+        let of = |share| shares.parts(share).iter().flat_map(|part| part.start..part.end);
+        assert!((0..3).all(|share| of(share).is_sorted()));
+        let mut all: Vec<u32> = (0..3).flat_map(of).collect();
         all.sort_unstable();
-        assert_eq!(all, (0..blocks.len()).collect::<Vec<_>>());
-        assert!((0..3).all(|s| shares.blocks(s).is_sorted()));
+        assert_eq!(all, (0..blocks.len() as u32).collect::<Vec<_>>());
     }
 
     /// Each body notes who moved it, in order: the notes must be those of one thread.
@@ -353,15 +292,17 @@ mod tests {
             let (blocks, runs) = island(seed, 400, 30);
             let shares = shares(4, &blocks, &runs, 400);
             let notes: Vec<Mutex<Vec<usize>>> = (0..400).map(|_| Mutex::default()).collect();
-            let work = |pass: u32, _: usize, range: Range<usize>| {
-                for block in range {
-                    for &body in &blocks[block] {
-                        notes[body as usize].lock().unwrap().push(pass as usize * blocks.len() + block);
+            let pass = |team: &Team, pass: usize| {
+                team.run(&shares, &|range| {
+                    for block in range {
+                        for &body in &blocks[block] {
+                            notes[body as usize].lock().unwrap().push(pass * blocks.len() + block);
+                        }
                     }
-                }
+                });
             };
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| Team::gather(&shares, work, |team| (0..20).for_each(|pass| team.run(pass))));
+            pool.install(|| Team::gather(4, |team| (0..20).for_each(|k| pass(team, k))));
             for (body, notes) in notes.into_iter().enumerate() {
                 let notes = notes.into_inner().unwrap();
                 assert!(notes.is_sorted(), "seed {seed}, body {body}: {notes:?}");
@@ -379,10 +320,10 @@ mod tests {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
         let count = AtomicU32::new(0);
         let lead = || {
-            let work = |_: u32, _: usize, range: Range<usize>| {
+            let work = |range: Range<usize>| {
                 count.fetch_add(range.len() as u32, Ordering::Relaxed);
             };
-            Team::gather(&shares, work, |team| (0..50).for_each(|pass| team.run(pass)));
+            Team::gather(2, |team| (0..50).for_each(|_| team.run(&shares, &work)));
         };
         pool.install(|| rayon::join(lead, lead));
         assert_eq!(count.into_inner() as usize, 2 * 50 * blocks.len());

@@ -1,5 +1,7 @@
 //! Warm start: the guessed impulses are applied before the sweeps of the first substep. Later substeps start from what the last one did to each body.
 
+use std::cell::Cell;
+
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
 use super::points::{Kind, Point, Push};
 use super::sides::Sides;
@@ -7,7 +9,7 @@ use crate::lanes::{Lanes, Portable, Row, dispatched, recast, recast_mut};
 
 dispatched! {
     /// Applies all impulses of all blocks to the velocities.
-    pub(crate) fn apply_impulses<K: Kind>(blocks: &[Block<Portable, K>], velocities: &mut [Row]) => apply_lanes
+    pub(crate) fn apply_impulses<K: Kind>(blocks: &[Block<Portable, K>], velocities: &[Cell<Row>]) => apply_lanes
 }
 
 dispatched! {
@@ -15,12 +17,12 @@ dispatched! {
     pub(crate) fn remove_momentum<K: Kind>(
         blocks: &mut [Block<Portable, K>],
         details: &[Detail<Portable>],
-        pushes: &mut [Row],
+        pushes: &[Cell<Row>],
     ) => remove_lanes
 }
 
 #[inline(always)]
-fn apply_lanes<F: Lanes, K: Kind>(blocks: &[Block<Portable, K>], velocities: &mut [Row]) {
+fn apply_lanes<F: Lanes, K: Kind>(blocks: &[Block<Portable, K>], velocities: &[Cell<Row>]) {
     for block in recast::<F, BlocksOf<K>>(blocks) {
         push_sides(block, &block.impulses, &block.friction.impulses, velocities);
     }
@@ -30,7 +32,7 @@ fn apply_lanes<F: Lanes, K: Kind>(blocks: &[Block<Portable, K>], velocities: &mu
 fn remove_lanes<F: Lanes, K: Kind>(
     blocks: &mut [Block<Portable, K>],
     details: &[Detail<Portable>],
-    pushes: &mut [Row],
+    pushes: &[Cell<Row>],
 ) {
     let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
     for (block, detail) in blocks.iter_mut().zip(recast::<F, DetailsOf>(details)) {
@@ -52,7 +54,12 @@ fn remove_lanes<F: Lanes, K: Kind>(
 }
 
 #[inline(always)]
-fn push_sides<F: Lanes, K: Kind>(block: &Block<F, K>, points: &[F; 4], friction: &[F; 3], rows: &mut [Row]) {
+fn push_sides<F: Lanes, K: Kind>(
+    block: &Block<F, K>,
+    points: &[F; 4],
+    friction: &[F; 3],
+    rows: &[Cell<Row>],
+) {
     let mut push = Push::zero();
     for q in 0..4 {
         block.points[q].add(points[q], &mut push);

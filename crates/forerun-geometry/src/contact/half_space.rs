@@ -60,27 +60,33 @@ impl Ground {
         Manifold::from_points(&kept[..count])
     }
 
-    /// All eight corners, the outermost along the two edges that lie flattest.
+    /// The corners of the face that looks most against the normal. No other corner is nearer than the one of these below it.
     fn under_cuboid(&self, cuboid: &Cuboid, pose: &Pose, margin: f32) -> Option<Manifold> {
         let axes = pose.axes();
         let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis];
-        let steep = [x, y, z].map(|axis| axis.dot(self.normal).abs());
-        let (u, v) = if steep[0] >= steep[1] && steep[0] >= steep[2] {
-            (y, z)
+        let cosine = [x, y, z].map(|axis| axis.dot(self.normal));
+        let steep = cosine.map(f32::abs);
+        let down = if steep[0] >= steep[1] && steep[0] >= steep[2] {
+            0
         } else if steep[1] >= steep[2] {
-            (z, x)
+            1
         } else {
-            (x, y)
+            2
         };
         let h = cuboid.half_extents;
-        let mut reducer = Reducer::new(pose.position, u, v);
-        for (sx, sy, sz) in SIGNS {
-            let contact = self.under(pose.position + x * (h.x * sx) + y * (h.y * sy) + z * (h.z * sz));
+        let mut side = [0.0; 3];
+        side[down] = if cosine[down] > 0.0 { -1.0 } else { 1.0 };
+        let mut manifold = Manifold { normal: self.normal, points: [ContactPoint::FAR_APART; 4], count: 0 };
+        for (u, v) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+            (side[(down + 1) % 3], side[(down + 2) % 3]) = (u, v);
+            let corner = pose.position + x * (h.x * side[0]) + y * (h.y * side[1]) + z * (h.z * side[2]);
+            let contact = self.under(corner);
             if contact.separation < margin {
-                reducer.offer(contact);
+                manifold.points[manifold.count as usize] = contact;
+                manifold.count += 1;
             }
         }
-        reducer.finish()
+        (manifold.count > 0).then_some(manifold)
     }
 
     fn under_hull(&self, hull: &Hull, pose: &Pose, margin: f32) -> Option<Manifold> {
@@ -96,15 +102,3 @@ impl Ground {
         reducer.finish()
     }
 }
-
-/// The eight corners of a cuboid.
-const SIGNS: [(f32, f32, f32); 8] = [
-    (-1.0, -1.0, -1.0),
-    (1.0, -1.0, -1.0),
-    (-1.0, 1.0, -1.0),
-    (1.0, 1.0, -1.0),
-    (-1.0, -1.0, 1.0),
-    (1.0, -1.0, 1.0),
-    (-1.0, 1.0, 1.0),
-    (1.0, 1.0, 1.0),
-];
