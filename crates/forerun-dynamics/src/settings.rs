@@ -42,7 +42,7 @@ pub struct StepSettings {
     /// Sweeps over all contacts in the first substep; later ones do one. 1 to 64, default 3.
     pub first_sweeps: u32,
     /// Sweeps, each down and up, that find what the contacts of an island carry, as if it stood still, where the contact graph cannot place its weight:
-    /// heaps, fallen dominoes, wedged bodies. Small high ones (arches, card houses) get 32, fast ones 4. 1 to 64, default 8.
+    /// heaps, fallen dominoes, wedged bodies. Small high ones (arches, card houses) get 32, fast ones 6. 1 to 64, default 8.
     pub first_sweeps_hard: u32,
     /// Contacts are found this far ahead of touching, and further for fast bodies. Metres, default 0.02.
     pub contact_margin_m: f32,

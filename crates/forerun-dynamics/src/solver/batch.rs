@@ -35,7 +35,7 @@ const HARD_PART: f64 = 0.1;
 /// Root mean square of the speeds in an island; what moves faster does not stand. m/s
 const SLOW: f64 = 0.5;
 /// Sweeps that find what the contacts of fast hard islands carry.
-const RUSHING_SWEEPS: u32 = 4;
+const RUSHING_SWEEPS: u32 = 6;
 /// Hard islands that are so high and have so few contacts are delicate: arches, card houses. It takes many sweeps to find what keeps them up, and
 /// as they are small that costs little: 0.1 ms for an arch of 17 stones.
 const DELICATE_LEVELS: u32 = 4;
