@@ -68,11 +68,12 @@ impl<'a> Slicer<'a> {
     pub(crate) fn run(&self, chosen: &mut [u32], run: &mut Run, scratch: &mut SliceScratch) {
         pack(self.plan, chosen, &mut scratch.packed);
         let mut batches: Vec<Batch> = std::mem::take(&mut scratch.batches);
-        let needed = if self.count == 1 { scratch.packed.len().min(wave()) } else { scratch.packed.len() };
-        batches.resize_with(needed.max(batches.len()), Batch::default);
+        let count = scratch.packed.len();
         if self.count == 1 {
+            batches.resize_with(batches.len().max(count.min(wave())), Batch::default);
             batches = self.whole(chosen, &scratch.packed, batches, run);
         } else {
+            batches.resize_with(batches.len().max(count), Batch::default);
             let mut parts = self.parts(chosen, &scratch.packed);
             for slice in 0..self.count {
                 batches = self.slice(&mut parts, slice + 1 == self.count, batches, run);

@@ -321,6 +321,26 @@ fn an_open_sheet_holds_shapes_on_its_front_only() {
 }
 
 #[test]
+fn nothing_catches_on_the_vertices_inside_a_flat_floor() {
+    let flat = terrain(|_, _| 0.0);
+    let half_extents = Vec3::splat(0.5);
+    let boxes =
+        [("box", Shape::Cuboid(Cuboid { half_extents })), ("mesh box", shape(meshes::cuboid(half_extents)))];
+    for (name, shape) in boxes {
+        // Its front goes over the row of vertices at x = 1.
+        for step in 0..60 {
+            let front = 0.97 + 0.001 * step as f32;
+            let mut upper = at(&shape, Vec3::new(front - 0.5, 0.4999, 0.03));
+            upper.motion.linear = Vec3::X * 0.05;
+            upper.motion.about = upper.pose.position;
+            for p in all_points(&contact(&at(&flat, Vec3::ZERO), &upper)) {
+                assert!(p.normal.y > 0.999, "{name} with its front at {front}: {}", p.normal);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_box_rests_on_the_ridge_of_a_sheet() {
     // A ridge along x whose vertices are a metre apart; the box lies between two of them.
     let ridge = terrain(|_, z| -0.5 * z.abs());

@@ -237,6 +237,12 @@ mod tests {
         Gauge::new(&world).deepest(world.states())
     }
 
+    fn turn(axis: Vec3, degrees: f64) -> Quat {
+        let (sin, cos) = (0.5 * degrees).to_radians().sin_cos();
+        let axis = axis * sin as f32;
+        Quat::from_xyzw(axis.x, axis.y, axis.z, cos as f32)
+    }
+
     fn cube(half: f32) -> BodyDef {
         BodyDef::new(Shape::cuboid(Vec3::splat(half)).unwrap())
     }
@@ -250,8 +256,7 @@ mod tests {
         near(deepest(&[BodyDef::fixed(Shape::half_space()), above(0.45)]), 0.05);
         // On its edge: the corner goes down by half of the diagonal.
         let mut tilted = above(0.5f32.sqrt() - 0.02);
-        let (sin, cos) = (22.5f32.to_radians().sin(), 22.5f32.to_radians().cos());
-        tilted.pose.rotation = Quat::from_xyzw(0.0, 0.0, sin, cos);
+        tilted.pose.rotation = turn(Vec3::Z, 45.0);
         near(deepest(&[BodyDef::fixed(Shape::half_space()), tilted]), 0.02);
         let ball = |x: f32| BodyDef::new(Shape::sphere(0.1).unwrap()).at(Vec3::new(x, 1.0, 0.0));
         near(deepest(&[ball(0.0), ball(0.19)]), 0.01);
@@ -266,9 +271,9 @@ mod tests {
             .collect();
         let mut hull = BodyDef::new(Shape::hull(&points).unwrap()).at(Vec3::new(0.3, 0.95, 0.2));
         let mut cube = cube(0.5);
-        for yaw in [0.0f32, 0.7] {
-            let turn = Quat::from_xyzw(0.0, (0.5 * yaw).sin(), 0.0, (0.5 * yaw).cos());
-            (hull.pose.rotation, cube.pose.rotation) = (turn, turn);
+        for yaw in [0.0, 40.0] {
+            let rotation = turn(Vec3::Y, yaw);
+            (hull.pose.rotation, cube.pose.rotation) = (rotation, rotation);
             assert!((deepest(&[cube.clone(), hull.clone()]) - 0.05).abs() < 1e-6);
         }
     }
@@ -276,11 +281,10 @@ mod tests {
     #[test]
     fn crossed_edges_are_seen() {
         // A box on its edge above another on its edge, at right angles: only the product of the two edges tells how deep.
-        let (sin, cos) = (22.5f32.to_radians().sin(), 22.5f32.to_radians().cos());
         let mut low = cube(0.5);
-        low.pose.rotation = Quat::from_xyzw(0.0, 0.0, sin, cos);
+        low.pose.rotation = turn(Vec3::Z, 45.0);
         let mut high = cube(0.5).at(Vec3::Y * (2.0f32.sqrt() - 0.03));
-        high.pose.rotation = Quat::from_xyzw(sin, 0.0, 0.0, cos);
+        high.pose.rotation = turn(Vec3::X, 45.0);
         assert!((deepest(&[low, high]) - 0.03).abs() < 1e-6);
     }
 }

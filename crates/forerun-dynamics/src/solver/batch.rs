@@ -16,7 +16,7 @@ use super::islands::Islands;
 use super::load::{LoadPass, Loads, Strain};
 use super::manifolds::Source;
 use super::positions::integrate_positions;
-use super::prepare::{Common, prepare};
+use super::prepare::Common;
 use super::rest::{Ending, RestScratch, Resting};
 use super::rows::Rows;
 use super::standing::StandingPass;
@@ -253,9 +253,7 @@ impl<'a> Batch<'a> {
             shock_yield: self.environment.settings.shock_yield,
             substep_seconds: self.substep_seconds(),
         };
-        let Rows { flat, uneven } = &mut self.rows;
-        prepare(&mut flat.blocks, &mut flat.details, &self.bodies, &source, &common);
-        prepare(&mut uneven.blocks, &mut uneven.details, &self.bodies, &source, &common);
+        self.rows.prepare(&self.bodies, &source, &common);
     }
 
     /// Finds a lane for every contact: flat islands apart from uneven ones, and each class by itself.

@@ -7,9 +7,9 @@ use std::cell::Cell;
 
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
 use super::impulses;
-use super::points::{Kind, Point, Push};
+use super::points::{Kind, Point, sum};
 use super::sides::Sides;
-use super::sweep::{coupling, friction};
+use super::sweep::{coupling, friction, slip};
 use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast};
 
 /// A collision may cause the next one within the same substep (a row of balls), at most so many in a row.
@@ -102,17 +102,9 @@ fn collide<F: Lanes, K: Kind>(block: &Block<F, K>, detail: &Detail<F>, moving: &
         impulses::add(moving.bounced, &detail.source, &impulses);
     }
     // Friction of the collision alone: the impulses of the contacts are kept apart.
-    let mut push = Push::zero();
-    let mut slip = [relative.linear.x, relative.linear.y, relative.angular.z];
-    let mut sum = F::zero();
-    for q in 0..4 {
-        block.points[q].add(impulses[q], &mut push);
-        for k in 0..3 {
-            slip[k] += block.friction.drag[k][q] * impulses[q];
-        }
-        sum += impulses[q];
-    }
-    let rubbed = friction(&block.friction, &slip, sum, &[F::zero(); 3]);
+    let slip = slip(block, &relative, &impulses);
+    let rubbed = friction(&block.friction, &slip, sum(&impulses), &[F::zero(); 3]);
+    let mut push = Point::push(&block.points, &impulses);
     push.rub([rubbed[0], rubbed[1]], rubbed[2]);
     v.push(block, &push);
     v.scatter(block, moving.velocities);
@@ -123,8 +115,7 @@ fn collide<F: Lanes, K: Kind>(block: &Block<F, K>, detail: &Detail<F>, moving: &
 /// collides: a flat landing.
 #[inline(always)]
 fn bounce<F: Lanes, K: Kind>(block: &Block<F, K>, hits: &[F; 4], all: F, lacking: &mut [F; 4]) -> [F; 4] {
-    let sum = lacking[0] + lacking[1] + lacking[2] + lacking[3];
-    let flat = all.gt(F::splat(0.5)).select((block.mean_gain * sum).max(F::zero()), F::zero());
+    let flat = all.gt(F::splat(0.5)).select((block.mean_gain * sum(lacking)).max(F::zero()), F::zero());
     let mut impulses = [F::zero(); 4];
     for q in 0..4 {
         impulses[q] = hits[q] * flat;

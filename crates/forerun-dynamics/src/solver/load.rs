@@ -4,11 +4,14 @@
 //! it: an affine pressure whose sum and moments match. It is the dual of shock propagation (Guendelman et al. 2003, section 8): forces
 //! travel down instead of velocities up. Only a guess: the sweeps may lower or raise it.
 
-use forerun_geometry::Vec3;
+use std::ops::Range;
+
+use forerun_geometry::contact::ContactPoint;
+use forerun_geometry::{Manifold, Vec3};
 
 use super::batch::ContactList;
 use super::contact_graph::ContactGraph;
-use super::pressure::{Carried, Pressure, Support};
+use super::pressure::{Carried, Footing, Pressure};
 use crate::scratch::fill;
 use crate::{Environment, Member};
 
@@ -16,6 +19,8 @@ use crate::{Environment, Member};
 const DEAD_SPEED: f32 = 0.1;
 /// What a body that nothing supports may sink at: anything. m/s
 const UNSUPPORTED: f32 = 1e9;
+/// A point that just supports weighs so much against one in full touch.
+const WEIGHT_MIN: f32 = 1e-4;
 /// A support's normal must rise by at least this.
 const RISE_MIN: f32 = 0.3;
 
@@ -49,17 +54,73 @@ impl Compass {
         let one = (across - up * across.dot(up)).normalize();
         Some(Compass { up, one, two: one.cross(up) })
     }
+}
 
-    /// Where a force acts on a body: its horizontal place relative to the centre, at the height of the centre. `arm` is that of its point; the force
-    /// is vertical where it is given as zero.
-    fn place(&self, arm: Vec3, force: Vec3) -> (f32, f32) {
-        let (mut x, mut z) = (arm.dot(self.one), arm.dot(self.two));
-        if force != Vec3::ZERO {
-            let rise = force.dot(self.up);
-            if rise.abs() > RISE_MIN {
-                let t = arm.dot(self.up) / rise;
-                x -= t * force.dot(self.one);
-                z -= t * force.dot(self.two);
+/// The four points of a manifold, place by place; those that are not meant are far apart.
+struct Points {
+    position: [[f32; 4]; 3],
+    normal: [[f32; 4]; 3],
+    separation: [f32; 4],
+}
+
+impl Points {
+    fn of(manifold: &Manifold) -> Points {
+        let p = &manifold.points;
+        let each = |of: fn(&ContactPoint) -> f32| [of(&p[0]), of(&p[1]), of(&p[2]), of(&p[3])];
+        Points {
+            position: [each(|p| p.position.x), each(|p| p.position.y), each(|p| p.position.z)],
+            normal: [each(|p| p.normal.x), each(|p| p.normal.y), each(|p| p.normal.z)],
+            separation: each(|p| p.separation),
+        }
+    }
+
+    fn normal_along(&self, direction: Vec3) -> [f32; 4] {
+        let [x, y, z] = &self.normal;
+        std::array::from_fn(|q| x[q] * direction.x + y[q] * direction.y + z[q] * direction.z)
+    }
+
+    /// 1 for a point in full touch, next to 0 where it just misses, 0 where it is farther or does not rise.
+    fn weight(&self, rise: &[f32; 4], touch: f32) -> [f32; 4] {
+        std::array::from_fn(|q| {
+            let weight = (touch - self.separation[q]) / touch;
+            let weight = if weight < WEIGHT_MIN { WEIGHT_MIN } else { weight };
+            let weight = if weight > 1.0 { 1.0 } else { weight };
+            if self.separation[q] < touch && rise[q] >= RISE_MIN { weight } else { 0.0 }
+        })
+    }
+
+    /// How fast a body sinks by closing the gap in a substep, and by moving along the surface that a point lies on. m/s
+    fn sinks(&self, velocity: Vec3, up: Vec3, substep_seconds: f32) -> [f32; 4] {
+        let (closing, rise) = (self.normal_along(velocity), self.normal_along(up));
+        let rises = velocity.dot(up);
+        std::array::from_fn(|q| {
+            let gap = if self.separation[q] > 0.0 { self.separation[q] } else { 0.0 };
+            gap / substep_seconds - (rises - rise[q] * closing[q])
+        })
+    }
+
+    /// Where forces along the normals, and so much friction for each, act on a body: horizontal places relative to its centre, at the height of the
+    /// centre. Without friction the forces count as vertical.
+    fn places(&self, centre: Vec3, rubs: Vec3, compass: &Compass) -> ([f32; 4], [f32; 4]) {
+        let [px, py, pz] = &self.position;
+        let along = |direction: Vec3| -> [f32; 4] {
+            std::array::from_fn(|q| {
+                let (x, y, z) = (px[q] - centre.x, py[q] - centre.y, pz[q] - centre.z);
+                x * direction.x + y * direction.y + z * direction.z
+            })
+        };
+        let (mut x, mut z) = (along(compass.one), along(compass.two));
+        if rubs != Vec3::ZERO {
+            let height = along(compass.up);
+            let [nx, ny, nz] = &self.normal;
+            for q in 0..4 {
+                let force = Vec3::new(nx[q], ny[q], nz[q]) + rubs;
+                let rise = force.dot(compass.up);
+                if rise.abs() > RISE_MIN {
+                    let t = height[q] / rise;
+                    x[q] -= t * force.dot(compass.one);
+                    z[q] -= t * force.dot(compass.two);
+                }
             }
         }
         (x, z)
@@ -85,7 +146,7 @@ pub(crate) struct Loads {
     /// By body: how fast it may sink. m/s
     allowed: Vec<f32>,
     /// The points below each body, in the order of the graph.
-    supports: Vec<Support>,
+    footings: Vec<Footing>,
     starts: Vec<u32>,
     pressure: Pressure,
 }
@@ -116,38 +177,45 @@ impl LoadPass<'_> {
         };
         fill(&mut loads.carried, self.members.len(), Both::default());
         fill(&mut loads.allowed, self.members.len(), 0.0);
-        loads.supports.clear();
+        loads.footings.clear();
         loads.starts.clear();
         for &i in &self.graph.order {
-            loads.starts.push(loads.supports.len() as u32);
+            loads.starts.push(loads.footings.len() as u32);
             self.weigh(i as usize, &compass, loads);
         }
-        let mut end = loads.supports.len();
-        for (&i, &start) in self.graph.order.iter().zip(&loads.starts).rev() {
-            let supports = &loads.supports[start as usize..end];
-            end = start as usize;
-            let i = i as usize;
-            let body = self.members[i].body;
-            if !body.is_dynamic() {
-                continue;
-            }
-            let fall = self.fall(i, &compass);
-            let weight = 1.0 / body.inverse_mass * fall * fall;
-            loads.strain[i].weight = weight;
-            if supports.is_empty() {
-                loads.strain[i].lost = weight;
-                continue;
-            }
-            let Both { total, still } = loads.carried[i];
-            loads.pressure.fit(supports, &total, &still, (1e-6 * body.radius * body.radius).max(1e-12));
-            loads.strain[i].lost = self.lost(i, supports, &loads.pressure, &still);
-            for (s, p) in supports.iter().zip(&loads.pressure.points).filter(|(_, p)| !p.dropped()) {
-                let load = &mut loads.of_contact[s.slot as usize / 4];
-                load.total[s.slot as usize % 4] = p.total * s.rise;
-                load.weight[s.slot as usize % 4] = p.still * s.rise;
-                let below = &mut loads.carried[s.below as usize];
-                below.total.add(p.total, s.below_x, s.below_z);
-                below.still.add(p.still, s.below_x, s.below_z);
+        let mut end = loads.footings.len();
+        for k in (0..self.graph.order.len()).rev() {
+            let start = loads.starts[k] as usize;
+            self.hand_down(self.graph.order[k] as usize, start..end, &compass, loads);
+            end = start;
+        }
+    }
+
+    /// Spreads the load of a body over the points below it.
+    fn hand_down(&self, i: usize, footings: Range<usize>, compass: &Compass, loads: &mut Loads) {
+        let body = self.members[i].body;
+        if !body.is_dynamic() {
+            return;
+        }
+        let fall = self.fall(i, compass);
+        let weight = 1.0 / body.inverse_mass * fall * fall;
+        loads.strain[i].weight = weight;
+        if footings.is_empty() {
+            loads.strain[i].lost = weight;
+            return;
+        }
+        let footings = &loads.footings[footings];
+        let Both { total, still } = loads.carried[i];
+        loads.pressure.fit(footings, &total, &still, (1e-6 * body.radius * body.radius).max(1e-12));
+        loads.strain[i].lost = self.lost(i, footings, &loads.pressure, &still);
+        for (f, s) in footings.iter().zip(&loads.pressure.shares) {
+            let load = &mut loads.of_contact[f.contact as usize];
+            let below = &mut loads.carried[f.below as usize];
+            for q in 0..4 {
+                load.total[q] = s.total[q] * f.rise[q];
+                load.weight[q] = s.still[q] * f.rise[q];
+                below.total.add(s.total[q], f.below_x[q], f.below_z[q]);
+                below.still.add(s.still[q], f.below_x[q], f.below_z[q]);
             }
         }
     }
@@ -159,16 +227,18 @@ impl LoadPass<'_> {
     }
 
     /// The part of a body's load that its supports do not take: moments that do not match, and sideways forces beyond friction.
-    fn lost(&self, i: usize, supports: &[Support], pressure: &Pressure, still: &Carried) -> f32 {
+    fn lost(&self, i: usize, footings: &[Footing], pressure: &Pressure, still: &Carried) -> f32 {
         let body = self.members[i].body;
         let (mut moment_1, mut moment_2, mut slips) = (still.moment_1, still.moment_2, 0.0);
-        for (s, p) in supports.iter().zip(&pressure.points).filter(|(_, p)| !p.dropped()) {
-            moment_1 -= p.still * s.x;
-            moment_2 -= p.still * s.z;
-            let steep = 1.0 - s.rise * s.rise;
-            if steep > 0.0 {
-                let friction = self.friction(i, s.below as usize);
-                let slip = p.still * (steep.sqrt() - friction * s.rise).max(0.0);
+        for (f, s) in footings.iter().zip(&pressure.shares) {
+            let friction = self.friction(i, f.below as usize);
+            for q in 0..4 {
+                moment_1 -= s.still[q] * f.x[q];
+                moment_2 -= s.still[q] * f.z[q];
+                let flat = f.rise[q] * f.rise[q];
+                let steep = if flat < 1.0 { (1.0 - flat).sqrt() } else { 0.0 };
+                let beyond = steep - friction * f.rise[q];
+                let slip = if beyond > 0.0 { s.still[q] * beyond } else { 0.0 };
                 slips += slip * slip;
             }
         }
@@ -196,7 +266,7 @@ impl LoadPass<'_> {
         let mut carried = Both::default();
         carried.still.sum = mass * fall;
         carried.total.sum = mass * fall;
-        if let Some(lowest) = self.find_supports(i, compass, loads) {
+        if let Some(lowest) = self.find_footings(i, compass, loads) {
             loads.allowed[i] = lowest;
             carried.total.sum = mass * (fall + shrink(sinking - lowest)).max(0.0);
             let spin = state.angular_velocity.length() * body.radius;
@@ -216,54 +286,45 @@ impl LoadPass<'_> {
 
     /// Lists the points on which a body may rest: of contacts with lower bodies, near enough, rising. Returns how fast they let it sink, if there
     /// are any. m/s
-    fn find_supports(&self, i: usize, compass: &Compass, loads: &mut Loads) -> Option<f32> {
+    fn find_footings(&self, i: usize, compass: &Compass, loads: &mut Loads) -> Option<f32> {
         let (levels, here) = (self.graph.levels(), &self.members[i].state);
-        let mut lowest: Option<f32> = None;
+        let mut lowest = f32::INFINITY;
+        let start = loads.footings.len();
         for link in self.graph.links(i) {
             let (k, below) = (link.contact as usize, link.body as usize);
             if !link.touches || levels[below] >= levels[i] {
                 continue;
             }
             let upwards = if self.contacts.ends[k].second as usize == i { 1.0 } else { -1.0 };
-            let (touch, slide) = (self.graph.touch(k), loads.of_contact[k].slide);
             let there = &self.members[below].state;
-            let velocity = here.velocity - there.velocity;
-            let allowed = loads.allowed[below];
-            // Mostly the points share their normal.
-            let mut normal = Vec3::ZERO;
-            let (mut rise, mut descent, mut force) = (0.0, 0.0, Vec3::ZERO);
-            for (q, point) in self.contacts.manifold(k).points().iter().enumerate() {
-                if point.normal != normal {
-                    normal = point.normal;
-                    rise = normal.dot(compass.up) * upwards;
-                    // How fast the body sinks by moving along the surface that the point lies on.
-                    let along = velocity - normal * velocity.dot(normal);
-                    descent = -along.dot(compass.up);
-                    if slide != Vec3::ZERO {
-                        force = normal + slide * self.friction(i, below);
-                    }
-                }
-                if point.separation >= touch || rise < RISE_MIN {
-                    continue;
-                }
-                let gap = if point.separation > 0.0 { point.separation } else { 0.0 };
-                let sinks = allowed + gap / self.substep_seconds + descent;
-                lowest = if lowest.is_some_and(|least| least <= sinks) { lowest } else { Some(sinks) };
-                let (x, z) = compass.place(point.position - here.position, force);
-                let (below_x, below_z) = compass.place(point.position - there.position, force);
-                loads.supports.push(Support {
-                    x,
-                    z,
-                    below_x,
-                    below_z,
-                    rise,
-                    weight: ((touch - point.separation) / touch).clamp(1e-4, 1.0),
-                    below: link.body,
-                    slot: link.contact * 4 + q as u32,
-                });
+            let points = Points::of(self.contacts.manifold(k));
+            let rise = points.normal_along(compass.up * upwards);
+            let touch = self.graph.touch(k);
+            let weight = points.weight(&rise, touch);
+            if weight == [0.0; 4] {
+                continue;
             }
+            let sinks = points.sinks(here.velocity - there.velocity, compass.up, self.substep_seconds);
+            for q in 0..4 {
+                let sinks = loads.allowed[below] + sinks[q];
+                lowest = if weight[q] > 0.0 && sinks < lowest { sinks } else { lowest };
+            }
+            let slide = loads.of_contact[k].slide;
+            let rubs = if slide == Vec3::ZERO { slide } else { slide * self.friction(i, below) };
+            let (x, z) = points.places(here.position, rubs, compass);
+            let (below_x, below_z) = points.places(there.position, rubs, compass);
+            loads.footings.push(Footing {
+                x,
+                z,
+                below_x,
+                below_z,
+                rise,
+                weight,
+                below: link.body,
+                contact: link.contact,
+            });
         }
-        lowest
+        (loads.footings.len() > start).then_some(lowest)
     }
 
     /// Which way friction pushes the second body of a contact, where a body slides on one that does not yield faster than friction can stop within

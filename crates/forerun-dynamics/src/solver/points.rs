@@ -23,7 +23,7 @@ pub(crate) struct Push<F> {
 
 impl<F: Lanes> Push<F> {
     #[inline(always)]
-    pub(crate) fn zero() -> Self {
+    pub(crate) fn none() -> Self {
         Push { force: V8::zero(), moment: V8::zero() }
     }
 
@@ -57,6 +57,18 @@ impl<F: Lanes> Side<F> {
     }
 }
 
+/// The sum over four points, in pairs: what waits for less is done sooner.
+#[inline(always)]
+pub(crate) fn sum<F: Lanes>([a, b, c, d]: &[F; 4]) -> F {
+    (*a + *b) + (*c + *d)
+}
+
+/// The sum of products over four points.
+#[inline(always)]
+pub(crate) fn weighted<F: Lanes>(a: &[F; 4], b: &[F; 4]) -> F {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
+}
+
 /// One point of each of eight contacts.
 pub(crate) trait Point<F: Lanes>: Copy + Debug {
     /// The point at a place relative to the centre, with its normal, both along the contact's axes.
@@ -65,8 +77,8 @@ pub(crate) trait Point<F: Lanes>: Copy + Debug {
     /// How fast the bodies part at the point.
     fn speed(&self, relative: &Relative<F>) -> F;
 
-    /// Adds an impulse along the point's normal.
-    fn add(&self, impulse: F, push: &mut Push<F>);
+    /// What impulses at the four points of a contact do together.
+    fn push(points: &[Self; 4], impulses: &[F; 4]) -> Push<F>;
 
     /// Mass-scaled angular part of the point's Jacobian.
     fn arm(&self, side: &Side<F>) -> V8<F>;
@@ -129,10 +141,12 @@ impl<F: Lanes> Point<F> for FlatPoint<F> {
     }
 
     #[inline(always)]
-    fn add(&self, impulse: F, push: &mut Push<F>) {
-        push.force.z += impulse;
-        push.moment.x += self.y * impulse;
-        push.moment.y -= self.x * impulse;
+    fn push([a, b, c, d]: &[Self; 4], impulses: &[F; 4]) -> Push<F> {
+        let zero = F::zero();
+        let x = weighted(impulses, &[a.y, b.y, c.y, d.y]);
+        let y = weighted(impulses, &[a.x, b.x, c.x, d.x]);
+        let force = V8 { x: zero, y: zero, z: sum(impulses) };
+        Push { force, moment: V8 { x, y: -y, z: zero } }
     }
 
     #[inline(always)]
@@ -158,9 +172,11 @@ impl<F: Lanes> Point<F> for UnevenPoint<F> {
     }
 
     #[inline(always)]
-    fn add(&self, impulse: F, push: &mut Push<F>) {
-        push.force = push.force + self.normal * impulse;
-        push.moment = push.moment + self.moment * impulse;
+    fn push([a, b, c, d]: &[Self; 4], i: &[F; 4]) -> Push<F> {
+        Push {
+            force: (a.normal * i[0] + b.normal * i[1]) + (c.normal * i[2] + d.normal * i[3]),
+            moment: (a.moment * i[0] + b.moment * i[1]) + (c.moment * i[2] + d.moment * i[3]),
+        }
     }
 
     #[inline(always)]

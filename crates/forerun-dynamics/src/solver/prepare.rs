@@ -257,7 +257,7 @@ impl<F: Lanes> Pairs<F> {
             for q in 0..4 {
                 arms[s][q] = block.points[q].arm(side);
             }
-            let mut tangent = [Push::zero(); 2];
+            let mut tangent = [Push::none(); 2];
             tangent[0].force.x = F::one();
             tangent[1].force.y = F::one();
             friction[s] = [side.arm(&tangent[0]), side.arm(&tangent[1]), side.turns[2]];

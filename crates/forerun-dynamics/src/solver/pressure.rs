@@ -19,160 +19,171 @@ impl Carried {
     }
 }
 
-/// A contact point below a body.
+/// The points of a contact with a body below. Where one does not support, its weight is 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Support {
-    /// Horizontal place relative to the body's centre, where the line of the force, friction of a slide included, is as high as the centre.
-    pub(super) x: f32,
-    pub(super) z: f32,
+pub(super) struct Footing {
+    /// Horizontal places relative to the body's centre, where the line of the force, friction of a slide included, is as high as the centre.
+    pub(super) x: [f32; 4],
+    pub(super) z: [f32; 4],
     /// The same for the body below.
-    pub(super) below_x: f32,
-    pub(super) below_z: f32,
-    pub(super) rise: f32,
+    pub(super) below_x: [f32; 4],
+    pub(super) below_z: [f32; 4],
+    pub(super) rise: [f32; 4],
     /// 1 in full touch, next to 0 where the points just miss each other.
-    pub(super) weight: f32,
+    pub(super) weight: [f32; 4],
     pub(super) below: u32,
-    /// Four times the contact, plus the point.
-    pub(super) slot: u32,
+    pub(super) contact: u32,
 }
 
-/// What a point below a body carries.
+/// What the points of a footing carry.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Share {
-    x: f32,
-    z: f32,
-    /// 0 once the point is dropped.
-    weight: f32,
-    pub(super) total: f32,
-    pub(super) still: f32,
+pub(super) struct Shares {
+    /// As in the footing; 0 too for points that would have to pull.
+    weight: [f32; 4],
+    pub(super) total: [f32; 4],
+    pub(super) still: [f32; 4],
 }
 
-impl Share {
-    /// Whether the point would have to pull.
-    pub(super) fn dropped(&self) -> bool {
-        self.weight == 0.0
-    }
-}
-
-/// A body's load spread over the points below it.
+/// A body's load spread over the points below it. Sums are taken by place in the footing, then over the four places.
 #[derive(Debug, Default)]
 pub(super) struct Pressure {
-    /// In the order of the supports.
-    pub(super) points: Vec<Share>,
+    /// In the order of the footings.
+    pub(super) shares: Vec<Shares>,
 }
 
 impl Pressure {
-    /// Spreads the load over the supports as an affine function of the place, without pulling.
-    pub(super) fn fit(&mut self, supports: &[Support], total: &Carried, still: &Carried, ridge: f32) {
-        let points = &mut self.points;
-        points.clear();
-        points.extend(supports.iter().map(|s| Share {
-            x: s.x,
-            z: s.z,
-            weight: s.weight,
-            total: 0.0,
-            still: 0.0,
-        }));
-        let mut kept = points.len();
+    /// Spreads the load over the points as an affine function of the place, without pulling.
+    pub(super) fn fit(&mut self, footings: &[Footing], total: &Carried, still: &Carried, ridge: f32) {
+        let shares = &mut self.shares;
+        shares.clear();
+        shares.extend(footings.iter().map(|f| Shares { weight: f.weight, total: [0.0; 4], still: [0.0; 4] }));
         for _ in 0..REFITS {
-            let dropped = spread(points, total, still, ridge);
-            kept -= dropped;
-            if dropped == 0 || kept == 0 {
+            if !spread(footings, shares, (total, still), ridge) {
                 break;
             }
         }
-        let (mut of_total, mut of_still) = (0.0, 0.0);
-        for p in points.iter_mut() {
-            if p.dropped() {
-                p.total = 0.0;
-                p.still = 0.0;
+        let (mut of_total, mut of_still) = ([0.0; 4], [0.0; 4]);
+        for s in shares.iter_mut() {
+            for q in 0..4 {
+                let kept = s.weight[q] > 0.0;
+                s.total[q] = if kept { s.total[q] } else { 0.0 };
+                s.still[q] = if kept && s.still[q] > 0.0 { s.still[q] } else { 0.0 };
+                of_total[q] += s.total[q];
+                of_still[q] += s.still[q];
             }
-            p.still = p.still.max(0.0);
-            of_total += p.total;
-            of_still += p.still;
         }
         let scale = |wanted: f32, got: f32| if got > 0.0 { wanted / got } else { 0.0 };
-        let (of_total, of_still) = (scale(total.sum, of_total), scale(still.sum, of_still));
-        for p in points {
-            p.total *= of_total;
-            p.still *= of_still;
+        let (of_total, of_still) = (scale(total.sum, sum(of_total)), scale(still.sum, sum(of_still)));
+        for s in shares {
+            for q in 0..4 {
+                s.total[q] *= of_total;
+                s.still[q] *= of_still;
+            }
         }
     }
 }
 
-/// One fit over the points that are left. Drops those that would have to pull, and returns how many.
-fn spread(points: &mut [Share], total: &Carried, still: &Carried, ridge: f32) -> usize {
-    // Points that are dropped weigh nothing, and add nothing to the sums.
-    let (mut weight, mut cx, mut cz) = (0.0, 0.0, 0.0);
-    for p in points.iter() {
-        weight += p.weight;
-        cx += p.x * p.weight;
-        cz += p.z * p.weight;
+/// One fit over the points that are left. Drops those that would have to pull, and says whether there were some, and others are left.
+fn spread(
+    footings: &[Footing],
+    shares: &mut [Shares],
+    (total, still): (&Carried, &Carried),
+    ridge: f32,
+) -> bool {
+    let (mut weight, mut cx, mut cz) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+    for (f, s) in footings.iter().zip(&*shares) {
+        for q in 0..4 {
+            weight[q] += s.weight[q];
+            cx[q] += f.x[q] * s.weight[q];
+            cz[q] += f.z[q] * s.weight[q];
+        }
     }
-    let (cx, cz) = (cx / weight, cz / weight);
-    let (mut xx, mut xz, mut zz) = (ridge * weight, 0.0, ridge * weight);
-    for p in points.iter() {
-        let (x, z) = (p.x - cx, p.z - cz);
-        xx += p.weight * x * x;
-        xz += p.weight * x * z;
-        zz += p.weight * z * z;
+    let weight = sum(weight);
+    let (cx, cz) = (sum(cx) / weight, sum(cz) / weight);
+    let (mut xx, mut xz, mut zz) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+    for (f, s) in footings.iter().zip(&*shares) {
+        for q in 0..4 {
+            let (x, z) = (f.x[q] - cx, f.z[q] - cz);
+            xx[q] += s.weight[q] * x * x;
+            xz[q] += s.weight[q] * x * z;
+            zz[q] += s.weight[q] * z * z;
+        }
     }
+    let (xx, xz, zz) = (sum(xx) + ridge * weight, sum(xz), sum(zz) + ridge * weight);
     let inverse = 1.0 / (xx * zz - xz * xz);
     let slopes = |load: &Carried| {
         let (m1, m2) = (load.moment_1 - load.sum * cx, load.moment_2 - load.sum * cz);
         ((m1 * zz - m2 * xz) * inverse, (m2 * xx - m1 * xz) * inverse)
     };
-    let (tx, tz) = slopes(total);
-    let (sx, sz) = slopes(still);
+    let ((tx, tz), (sx, sz)) = (slopes(total), slopes(still));
     let (mean_total, mean_still) = (total.sum / weight, still.sum / weight);
-    let mut dropped = 0;
-    for p in points {
-        let (x, z) = (p.x - cx, p.z - cz);
-        p.still = p.weight * (mean_still + x * sx + z * sz);
-        p.total = p.weight * (mean_total + x * tx + z * tz);
-        if p.total < 0.0 {
-            p.weight = 0.0;
-            dropped += 1;
+    let (mut pulls, mut kept) = (false, false);
+    for (f, s) in footings.iter().zip(shares) {
+        for q in 0..4 {
+            let (x, z) = (f.x[q] - cx, f.z[q] - cz);
+            s.still[q] = s.weight[q] * (mean_still + x * sx + z * sz);
+            s.total[q] = s.weight[q] * (mean_total + x * tx + z * tz);
+            let pull = s.total[q] < 0.0;
+            s.weight[q] = if pull { 0.0 } else { s.weight[q] };
+            pulls |= pull;
+            kept |= s.weight[q] > 0.0;
         }
     }
-    dropped
+    pulls && kept
+}
+
+fn sum(places: [f32; 4]) -> f32 {
+    (places[0] + places[1]) + (places[2] + places[3])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The load spread over points at these places.
-    fn fitted(places: &[(f32, f32)], load: &Carried) -> Vec<Share> {
-        let at =
-            |&(x, z)| Support { x, z, below_x: 0.0, below_z: 0.0, rise: 1.0, weight: 1.0, below: 0, slot: 0 };
-        let supports: Vec<Support> = places.iter().map(at).collect();
-        let mut pressure = Pressure::default();
-        pressure.fit(&supports, load, load, 1e-9);
-        pressure.points
-    }
+    const SQUARE: Footing = Footing {
+        x: [-1.0, 1.0, 1.0, -1.0],
+        z: [-1.0, -1.0, 1.0, 1.0],
+        below_x: [0.0; 4],
+        below_z: [0.0; 4],
+        rise: [1.0; 4],
+        weight: [1.0; 4],
+        below: 0,
+        contact: 0,
+    };
 
-    const SQUARE: [(f32, f32); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    /// The load spread over these points.
+    fn fitted(footings: &[Footing], load: &Carried) -> Vec<Shares> {
+        let mut pressure = Pressure::default();
+        pressure.fit(footings, load, load, 1e-9);
+        pressure.shares
+    }
 
     #[test]
     fn sum_and_moments_match_where_no_point_must_pull() {
         let mut load = Carried::default();
         load.add(10.0, 0.3, -0.2);
-        let points = fitted(&SQUARE, &load);
-        let moment = |place: fn(&Share) -> f32| points.iter().map(|p| p.total * place(p)).sum::<f32>();
-        assert!((moment(|_| 1.0) - 10.0).abs() < 1e-5);
-        assert!((moment(|p| p.x) - 3.0).abs() < 1e-5);
-        assert!((moment(|p| p.z) + 2.0).abs() < 1e-5);
-        assert!(points.iter().all(|p| p.still.to_bits() == p.total.to_bits() && !p.dropped()));
+        // Another footing, of which one point alone supports.
+        let beside = Footing { weight: [0.0, 1.0, 0.0, 0.0], ..SQUARE };
+        let footings = [SQUARE, beside];
+        let shares = fitted(&footings, &load);
+        let moment = |place: fn(&Footing, usize) -> f32| {
+            let of = |(f, s): (&Footing, &Shares)| (0..4).map(|q| s.total[q] * place(f, q)).sum::<f32>();
+            footings.iter().zip(&shares).map(of).sum::<f32>()
+        };
+        assert!((moment(|_, _| 1.0) - 10.0).abs() < 1e-5);
+        assert!((moment(|f, q| f.x[q]) - 3.0).abs() < 1e-5);
+        assert!((moment(|f, q| f.z[q]) + 2.0).abs() < 1e-5);
+        assert!(shares.iter().all(|s| s.still == s.total));
+        assert_eq!(shares[1].total.map(|load| load > 0.0), [false, true, false, false]);
     }
 
     #[test]
     fn a_load_beyond_the_edge_lies_on_the_edge() {
         let mut load = Carried::default();
         load.add(10.0, 1.5, 0.0);
-        let points = fitted(&SQUARE, &load);
-        let dropped: Vec<bool> = points.iter().map(Share::dropped).collect();
-        assert_eq!(dropped, [true, false, false, true]);
-        assert!(points[1..3].iter().all(|p| (p.total - 5.0).abs() < 1e-4), "{points:?}");
+        let shares = fitted(&[SQUARE], &load);
+        assert_eq!(shares[0].weight, [0.0, 1.0, 1.0, 0.0]);
+        let expected = [0.0, 5.0, 5.0, 0.0];
+        assert!(shares[0].total.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{shares:?}");
     }
 }

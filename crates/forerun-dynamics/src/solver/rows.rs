@@ -4,14 +4,19 @@
 
 use std::cell::Cell;
 
+use rayon::prelude::*;
+
 use super::blocks::{Arranged, Block, Class, Detail};
+use super::bodies::Bodies;
 use super::collisions::{Ahead, Moving, resolve_collisions};
 use super::descent::{Descent, Hard, Sweeps};
 use super::energy_guard::{EnergyGuard, Guarded, Guarding};
 use super::impulses::add_substep;
 use super::islands::Islands;
+use super::manifolds::Source;
 use super::overlap::overlap_growth;
 use super::points::{Flat, Kind, Uneven};
+use super::prepare::{Common, prepare};
 use super::shared::{Least, Shared};
 use super::shock::{propagate_classic, propagate_shock};
 use super::standing::StandingPass;
@@ -34,6 +39,12 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
+    /// Fills the blocks in; those that are shared out, by all threads.
+    pub(crate) fn prepare(&mut self, bodies: &Bodies, source: &Source, common: &Common) {
+        self.flat.prepare(bodies, source, common);
+        self.uneven.prepare(bodies, source, common);
+    }
+
     /// Into how many shares the blocks are cut, at least of one kind; 1 where one thread does them all.
     pub(crate) fn share_count(&self) -> usize {
         self.flat.shares.len().max(self.uneven.shares.len()).max(1)
@@ -157,6 +168,18 @@ impl Rows {
 }
 
 impl<K: Kind> Arranged<K> {
+    fn prepare(&mut self, bodies: &Bodies, source: &Source, common: &Common) {
+        // Every block is filled in for itself.
+        if self.shares.len() < 2 {
+            prepare(&mut self.blocks, &mut self.details, bodies, source, common);
+        } else {
+            let parts = self.blocks.par_chunks_mut(BLOCKS_PER_SHARE);
+            parts.zip(self.details.par_chunks_mut(BLOCKS_PER_SHARE)).for_each(|(blocks, details)| {
+                prepare(blocks, details, bodies, source, common);
+            });
+        }
+    }
+
     /// Has `kernel` go over all blocks in their order: at once, or, where the island has been shared out, over parts of it side by side.
     #[allow(unsafe_code, reason = "hands out parts of the blocks to several threads")]
     fn pass(

@@ -26,6 +26,8 @@ pub(crate) struct Part {
 #[derive(Debug, Default)]
 pub(crate) struct Shares {
     shares: Vec<Vec<Part>>,
+    /// How many there are; the others are memory to be used again.
+    count: usize,
     /// Per body, while they are made: the share that moved it last, and how many parts that had then.
     last: Vec<(u32, u32)>,
     /// Per share: whether its last part may grow.
@@ -43,7 +45,8 @@ impl Shares {
         body_count: usize,
         bodies: impl Fn(usize) -> I,
     ) {
-        self.shares.resize(count, Vec::new());
+        self.count = count;
+        self.shares.resize(count.max(self.shares.len()), Vec::new());
         self.shares.iter_mut().for_each(Vec::clear);
         fill(&mut self.last, body_count, NOBODY);
         fill(&mut self.open, count, false);
@@ -62,12 +65,12 @@ impl Shares {
 
     /// Makes it no shares at all.
     pub(crate) fn clear(&mut self) {
-        self.shares.clear();
+        self.count = 0;
     }
 
     /// How many shares there are.
     pub(crate) fn len(&self) -> usize {
-        self.shares.len()
+        self.count
     }
 
     /// The parts of a share, in its order.
@@ -76,7 +79,7 @@ impl Shares {
     }
 
     fn add(&mut self, share: usize, block: u32, bodies: impl Iterator<Item = u32> + Clone) {
-        let count = self.shares.len();
+        let count = self.count;
         let mut waits = false;
         for body in bodies.clone() {
             let (other, parts) = self.last[body as usize];

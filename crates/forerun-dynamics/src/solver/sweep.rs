@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf, Friction};
 use super::collisions::Ahead;
-use super::points::{Kind, Point, Push};
+use super::points::{Kind, Point, Relative, sum, weighted};
 use super::sides::Sides;
 use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast, recast_mut};
 
@@ -143,30 +143,33 @@ fn solve<F: Lanes, K: Kind>(block: &mut Block<F, K>, v: &mut Sides<F>, allowed: 
     together(block, &mut closing);
     one_by_one(block, &mut closing);
 
-    let mut push = Push::zero();
-    let mut slip = [relative.linear.x, relative.linear.y, relative.angular.z];
-    let mut sum = F::zero();
+    let mut changes = [F::zero(); 4];
     for q in 0..4 {
-        let change = block.impulses[q] - before[q];
-        block.points[q].add(change, &mut push);
-        for k in 0..3 {
-            slip[k] += block.friction.drag[k][q] * change;
-        }
-        sum += block.impulses[q];
+        changes[q] = block.impulses[q] - before[q];
     }
+    let mut slip = self::slip(block, &relative, &changes);
+    let mut sum = self::sum(&block.impulses);
     if law == Law::Cone {
-        sum += wedge(block, &mut push, &mut slip, sum);
+        let share = wedge(block, &slip, sum);
+        for q in 0..4 {
+            let share = block.is_point(q).select(share, F::zero());
+            block.impulses[q] += share;
+            changes[q] += share;
+        }
+        slip = self::slip(block, &relative, &changes);
+        sum = self::sum(&block.impulses);
     }
     let rubbed = friction(&block.friction, &slip, sum, &block.friction.impulses);
     let old = block.friction.impulses;
+    let mut push = Point::push(&block.points, &changes);
     push.rub([rubbed[0] - old[0], rubbed[1] - old[1]], rubbed[2] - old[2]);
     block.friction.impulses = rubbed;
     v.push(block, &push);
 }
 
-/// Presses all points alike by as much as the friction lacks, up to where more would cost more energy than the friction takes. Returns the sum.
+/// By how much all points alike are to be pressed because the friction lacks it, up to where more would cost more energy than the friction takes.
 #[inline(always)]
-fn wedge<F: Lanes, K: Kind>(block: &mut Block<F, K>, push: &mut Push<F>, slip: &mut [F; 3], sum: F) -> F {
+fn wedge<F: Lanes, K: Kind>(block: &Block<F, K>, slip: &[F; 3], sum: F) -> F {
     let rows = &block.friction;
     let [k11, k12, k22] = rows.inverse_k;
     let old = &rows.impulses;
@@ -179,28 +182,35 @@ fn wedge<F: Lanes, K: Kind>(block: &mut Block<F, K>, push: &mut Push<F>, slip: &
     // Least s² / 2 g + (lacking - c s)² / 2 k, with g the gain of the mean row and k that of the friction.
     let (c, k) = (rows.kinetic_coefficient * count, F::splat(0.5) * (k11 + k22));
     let share = block.mean_gain * c * lacking / (k + block.mean_gain * c * c).max(F::splat(1e-20));
-    let share = sum.gt(F::zero()).select(share, F::zero());
-    for q in 0..4 {
-        let share = block.is_point(q).select(share, F::zero());
-        block.impulses[q] += share;
-        block.points[q].add(share, push);
-        for k in 0..3 {
-            slip[k] += block.friction.drag[k][q] * share;
-        }
-    }
-    share * count
+    sum.gt(F::zero()).select(share, F::zero())
+}
+
+/// How a contact slips along its tangents and twists about its normal, after such impulses at its points.
+#[inline(always)]
+pub(crate) fn slip<F: Lanes, K: Kind>(
+    block: &Block<F, K>,
+    relative: &Relative<F>,
+    impulses: &[F; 4],
+) -> [F; 3] {
+    let [x, y, twist] = &block.friction.drag;
+    [
+        relative.linear.x + weighted(x, impulses),
+        relative.linear.y + weighted(y, impulses),
+        relative.angular.z + weighted(twist, impulses),
+    ]
 }
 
 /// The mean of the points as one row: the same impulse at each, down to none at the least loaded. Converges faster than the points alone.
 #[inline(always)]
 fn together<F: Lanes, K: Kind>(block: &mut Block<F, K>, closing: &mut [F; 4]) {
-    let (mut sum, mut least) = (F::zero(), F::splat(1e30));
+    let (mut own, mut least) = ([F::zero(); 4], [F::zero(); 4]);
     for q in 0..4 {
         let is_point = block.is_point(q);
-        sum += is_point.select(closing[q], F::zero());
-        least = is_point.select(block.impulses[q], least).min(least);
+        own[q] = is_point.select(closing[q], F::zero());
+        least[q] = is_point.select(block.impulses[q], F::splat(1e30));
     }
-    let share = (-(block.mean_gain * sum)).max(-least);
+    let least = least[0].min(least[1]).min(least[2].min(least[3]));
+    let share = (-(block.mean_gain * sum(&own))).max(-least);
     for q in 0..4 {
         block.impulses[q] += block.is_point(q).select(share, F::zero());
         closing[q] += block.row_sums[q] * share;

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
-use super::points::{Kind, Point, Push};
+use super::points::{Kind, Point};
 use super::sides::Sides;
 use crate::lanes::{Lanes, Portable, Row, dispatched, recast, recast_mut};
 
@@ -60,10 +60,7 @@ fn push_sides<F: Lanes, K: Kind>(
     friction: &[F; 3],
     rows: &[Cell<Row>],
 ) {
-    let mut push = Push::zero();
-    for q in 0..4 {
-        block.points[q].add(points[q], &mut push);
-    }
+    let mut push = Point::push(&block.points, points);
     push.rub([friction[0], friction[1]], friction[2]);
     let mut sides = Sides::gather(block, rows);
     sides.push(block, &push);

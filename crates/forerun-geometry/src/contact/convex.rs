@@ -91,6 +91,11 @@ impl Placed<'_> {
 }
 
 fn solid_solid(a: &Solid, b: &Solid, margin: f32) -> Option<Manifold> {
+    // Most neighbours that are apart are so along the line of their middles.
+    let between = unit_or(b.middle() - a.middle(), Vec3::Y);
+    if -b.reach(-between) - a.reach(between) - a.radius - b.radius >= margin {
+        return None;
+    }
     let small = MARGIN_PART * a.size.min(b.size);
     let face_margin = FACE_MARGIN.min(small);
     let face = best_face(a, b, SECOND_FACE_MARGIN.min(small));
@@ -170,8 +175,7 @@ fn best_face(a: &Solid, b: &Solid, preference: f32) -> Option<BestFace> {
 /// How high the lowest point of `other` is above a face. Metres.
 fn height_over(own: &Solid, face: usize, other: &Solid) -> f32 {
     let (normal, offset) = own.plane(face);
-    let lowest = other.support(-normal.as_dvec3()).as_vec3();
-    normal.dot(lowest) - offset - other.radius
+    -other.reach(-normal) - offset - other.radius
 }
 
 fn on_best_face(a: &Solid, b: &Solid, best: BestFace, margin: f32) -> Option<Manifold> {

@@ -154,6 +154,21 @@ impl<'a> Solid<'a> {
         self.axes_exact * local + self.centre.as_dvec3()
     }
 
+    /// How far the core reaches along a unit direction, from the origin. Metres.
+    pub(super) fn reach(&self, direction: Vec3) -> f32 {
+        let Vec3 { x: u, y: v, z: w } = self.axes.transpose() * direction;
+        let own = match self.core {
+            Core::Segment { half_height } => v.abs() * half_height,
+            Core::Cuboid { half_extents: h } => u.abs() * h.x + v.abs() * h.y + w.abs() * h.z,
+            Core::Cylinder { half_height, radius } => v.abs() * half_height + (u * u + w * w).sqrt() * radius,
+            Core::Hull(hull) => {
+                let local = Vec3::new(u, v, w);
+                hull.vertices.iter().fold(f32::NEG_INFINITY, |most, vertex| most.max(vertex.dot(local)))
+            }
+        };
+        own + self.centre.dot(direction)
+    }
+
     /// How many flat faces it has.
     pub(super) fn face_count(&self) -> usize {
         match self.core {

@@ -60,24 +60,53 @@ impl MeshCollider {
 /// The vertices, and points along ridges and boundaries no further apart than the thickness of the mesh (of an open
 /// one, which has none, a quarter of their mean length): where the edges of two frames cross, no vertex is near.
 fn sample_points(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Sample> {
-    let vertices = mesh.vertices.iter().zip(&normals.vertex_normals);
-    let mut samples: Vec<Sample> =
-        vertices.map(|(point, normal)| Sample { point: *point, normal: *normal }).collect();
-    let sharp: Vec<([Vec3; 2], Vec3)> = (0..normals.edges.len())
-        .filter(|e| matches!(normals.edge_kinds[*e], EdgeKind::Ridge | EdgeKind::Boundary))
-        .map(|e| (normals.edges[e].map(|v| mesh.vertices[v as usize]), normals.edge_normals[e]))
+    let (vertex_facing, edge_facing) = facing_max(mesh, normals);
+    let vertices = mesh.vertices.iter().zip(&normals.vertex_normals).zip(vertex_facing);
+    let mut samples: Vec<Sample> = vertices
+        .map(|((point, normal), facing_max)| Sample { point: *point, normal: *normal, facing_max })
         .collect();
-    let total = sharp.iter().map(|([a, b], _)| a.distance(*b)).sum::<f32>();
+    let sharp: Vec<([Vec3; 2], Vec3, f32)> = (0..normals.edges.len())
+        .filter(|e| matches!(normals.edge_kinds[*e], EdgeKind::Ridge | EdgeKind::Boundary))
+        .map(|e| {
+            let ends = normals.edges[e].map(|v| mesh.vertices[v as usize]);
+            (ends, normals.edge_normals[e], edge_facing[e])
+        })
+        .collect();
+    let total = sharp.iter().map(|([a, b], ..)| a.distance(*b)).sum::<f32>();
     let wished = if mesh.closed {
         2.0 * mesh.half_thickness()
     } else {
         total / (OPEN_EDGE_PARTS * sharp.len().max(1) as f32)
     };
     let spacing = wished.max(total / EDGE_SAMPLES_MAX);
-    for ([a, b], normal) in sharp {
+    for ([a, b], normal, facing_max) in sharp {
         let parts = (a.distance(b) / spacing).ceil() as u32;
         let point = |k: u32| a + (b - a) * (k as f32 / parts as f32);
-        samples.extend((1..parts).map(|k| Sample { point: point(k), normal }));
+        samples.extend((1..parts).map(|k| Sample { point: point(k), normal, facing_max }));
     }
     samples
+}
+
+/// [`Sample::facing_max`] of the vertices and edges: by the widest angle between the normal there and that of a triangle around.
+fn facing_max(mesh: &Mesh, normals: &PseudoNormals) -> (Vec<f32>, Vec<f32>) {
+    let (mut at_vertices, mut at_edges) =
+        (vec![1.0_f32; mesh.vertices.len()], vec![1.0_f32; normals.edges.len()]);
+    for (t, (corners, edges)) in mesh.triangles.iter().zip(&normals.triangle_edges).enumerate() {
+        let normal = pseudo_normals::face_normal(mesh, t).as_vec3();
+        for v in corners.map(|v| v as usize) {
+            at_vertices[v] = at_vertices[v].min(normals.vertex_normals[v].dot(normal));
+        }
+        for e in edges.map(|e| e as usize) {
+            at_edges[e] = at_edges[e].min(normals.edge_normals[e].dot(normal));
+        }
+    }
+    // Where the surface ends, what comes from the side touches it too.
+    let bounded =
+        |bounded: bool, cosine: f32| if bounded { Sample::SHARP } else { Sample::facing_within(cosine) };
+    let vertices = at_vertices.iter().zip(&normals.vertex_on_boundary);
+    let edges = at_edges.iter().zip(&normals.edge_kinds);
+    (
+        vertices.map(|(cosine, on_boundary)| bounded(*on_boundary, *cosine)).collect(),
+        edges.map(|(cosine, kind)| bounded(*kind == EdgeKind::Boundary, *cosine)).collect(),
+    )
 }

@@ -12,6 +12,27 @@ pub struct Sample {
     pub point: Vec3,
     /// Outward unit normal: at an edge or corner the mean of those around.
     pub normal: Vec3,
+    /// Largest cosine between this normal and the outward normal of whatever touches here: -1 if only what faces it exactly may.
+    pub facing_max: f32,
+}
+
+impl Sample {
+    /// [`Sample::facing_max`] at edges and corners: two surfaces that touch face each other, with some to spare. It keeps a point
+    /// that has come through the side of an edge, or past the middle of a thin part, from being pushed out on the wrong side.
+    pub(crate) const SHARP: f32 = 0.2;
+
+    /// [`Sample::facing_max`] inside a plane: 30 degrees for what interpolation turns a normal by.
+    pub(crate) const FLAT: f32 = -0.87;
+
+    /// [`Sample::facing_max`] where the normals of the faces around are up to an angle away from that of the sample, whose cosine is given.
+    ///
+    /// A point inside a flat or smooth part of a surface can only be touched by what lies on that part: without this it would catch the
+    /// front of whatever slides over it (an *internal edge*).
+    pub(crate) fn facing_within(cosine: f32) -> f32 {
+        // From flat to an edge of 90 degrees, whose cosine is that of 45.
+        let sharpness = (1.0 - cosine) / (1.0 - std::f32::consts::FRAC_1_SQRT_2);
+        Sample::FLAT + (Sample::SHARP - Sample::FLAT) * sharpness.clamp(0.0, 1.0)
+    }
 }
 
 /// Samples in leaves of 8, the leaves in nodes of 8.
@@ -21,6 +42,8 @@ pub struct Samples {
     points: Vec<Lanes3>,
     /// Their normals.
     normals: Vec<Lanes3>,
+    /// See [`Sample::facing_max`].
+    facing_max: Vec<Lanes>,
     /// Spheres around the leaves: lane l of block k is leaf 8 k + l.
     leaves: Vec<Spheres>,
     /// Spheres around the blocks of leaves: lane l of block k is leaf block 8 k + l.
@@ -45,6 +68,10 @@ impl Samples {
         Samples {
             points: leaves.iter().map(|leaf| block_of(leaf, |s| s.point)).collect(),
             normals: leaves.iter().map(|leaf| block_of(leaf, |s| s.normal)).collect(),
+            facing_max: leaves
+                .iter()
+                .map(|leaf| Lanes(std::array::from_fn(|i| leaf[i.min(leaf.len() - 1)].facing_max)))
+                .collect(),
             leaves: leaves.chunks(WIDTH).map(Spheres::around).collect(),
             nodes: nodes.chunks(WIDTH).map(Spheres::around).collect(),
             count: samples.len(),
@@ -62,19 +89,27 @@ impl Samples {
         (0..self.count).map(|i| Sample {
             point: self.points[i / WIDTH].lane(i % WIDTH),
             normal: self.normals[i / WIDTH].lane(i % WIDTH),
+            facing_max: self.facing_max[i / WIDTH].0[i % WIDTH],
         })
     }
 
     /// Memory that the points and spheres take.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        2 * size_of_val(&*self.points) + size_of_val(&*self.leaves) + size_of_val(&*self.nodes)
+        2 * size_of_val(&*self.points)
+            + size_of_val(&*self.facing_max)
+            + size_of_val(&*self.leaves)
+            + size_of_val(&*self.nodes)
     }
 
-    /// Calls `visit` with eight points, their normals and the bits of those that are meant, for every leaf that `near` lets through:
-    /// it is asked about eight spheres at a time and answers with the bits of those that are near enough.
+    /// Calls `visit` with eight points, their normals, how these must face what they touch and the bits of those that are meant, for every leaf
+    /// that `near` lets through: it is asked about eight spheres at a time and answers with the bits of those that are near enough.
     #[inline]
-    pub(crate) fn visit(&self, near: impl Fn(&Spheres) -> u32, mut visit: impl FnMut(&Lanes3, &Lanes3, u32)) {
+    pub(crate) fn visit(
+        &self,
+        near: impl Fn(&Spheres) -> u32,
+        mut visit: impl FnMut([&Lanes3; 2], &Lanes, u32),
+    ) {
         for (block, nodes) in self.nodes.iter().enumerate() {
             let mut node_bits = near(nodes);
             while node_bits != 0 {
@@ -85,7 +120,8 @@ impl Samples {
                     let leaf = node * WIDTH + leaf_bits.trailing_zeros() as usize;
                     leaf_bits &= leaf_bits - 1;
                     let meant = (self.count - leaf * WIDTH).min(WIDTH);
-                    visit(&self.points[leaf], &self.normals[leaf], (1_u32 << meant) - 1);
+                    let (points, normals) = (&self.points[leaf], &self.normals[leaf]);
+                    visit([points, normals], &self.facing_max[leaf], (1_u32 << meant) - 1);
                 }
             }
         }
@@ -144,7 +180,7 @@ mod tests {
     fn scattered(count: u32) -> Vec<Sample> {
         let part = |i: u32, k: u32| ((i * 7919 + k * 104_729) % 1009) as f32 / 1009.0;
         let point = |i| Vec3::new(part(i, 1), part(i * i % 997, 2), part(i * 31 % 499, 3));
-        (0..count).map(|i| Sample { point: point(i), normal: Vec3::Y }).collect()
+        (0..count).map(|i| Sample { point: point(i), normal: Vec3::Y, facing_max: Sample::SHARP }).collect()
     }
 
     #[test]
@@ -154,7 +190,7 @@ mod tests {
             let samples = Samples::new(given.clone());
             let mut visited: Vec<[u32; 3]> = Vec::new();
             let all = |spheres: &Spheres| Lanes::splat(f32::NEG_INFINITY).below(spheres.radius).bits();
-            samples.visit(all, |points, _, meant| {
+            samples.visit(all, |[points, _], _, meant| {
                 visited.extend(
                     (0..WIDTH)
                         .filter(|i| meant >> i & 1 == 1)

@@ -4,20 +4,19 @@ use super::Candidate;
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
 use crate::Vec3;
-use crate::sdf::Samples;
 use crate::sdf::lanes::{Lanes, Lanes3, WIDTH};
+use crate::sdf::primitive::Surface;
+use crate::sdf::{Sample, Samples};
 
 /// Gradients shorter than this (squared) say nothing: they come from the middle of thin parts.
 const GRADIENT_SQUARED_MIN: f32 = 0.01;
 
-/// Two surfaces that touch face each other, at edges and corners too: this is the largest cosine between the normal of
-/// a point and the gradient there, with some to spare for facets. It keeps a point that has come through the side of
-/// an edge, or past the middle of a thin part, from being pushed out on the wrong side.
-const FACING_MAX: f32 = 0.2;
-
 /// The corners of boxes face what they stand on with a cosine of -0.58, edges and smooth surfaces better. Points that
 /// face the surface less well are asked again.
 const FACING_WELL: f32 = -0.45;
+
+/// Points whose surroundings have the same normal, but for rounding, are inside a plane.
+const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
 
 /// They are if they are inside the surface, or this close to it. Metres.
 const BESIDE: f32 = 0.005;
@@ -26,6 +25,8 @@ const BESIDE: f32 = 0.005;
 struct Eight {
     points: Lanes3,
     outwards: Lanes3,
+    /// See [`Sample::facing_max`](crate::sdf::Sample::facing_max).
+    facing_max: Lanes,
 }
 
 /// What the field says to them.
@@ -57,10 +58,11 @@ impl Direction<'_> {
     fn find_sharp(&self, samples: &Samples, index: usize, candidates: &mut Vec<Candidate>) {
         samples.visit(
             |spheres| self.near(spheres.centre.transformed(&self.axes, self.origin), spheres.radius),
-            |points, normals, meant| {
+            |[points, normals], facing_max, meant| {
                 let eight = Eight {
                     points: points.transformed(&self.axes, self.origin),
                     outwards: normals.transformed(&self.axes, Vec3::ZERO),
+                    facing_max: *facing_max,
                 };
                 let mut there = self.meet(&eight, 0.0, meant);
                 if there.doubtful != 0 && self.inset > 0.0 {
@@ -92,7 +94,7 @@ impl Direction<'_> {
         let closing = normal.dot(self.motion_at(eight.points)).min(Lanes::ZERO);
         let facing = normal.dot(eight.outwards);
         let found = near
-            & facing.below(Lanes::splat(FACING_MAX)).bits()
+            & facing.below(eight.facing_max).bits()
             & (distance + closing).below(Lanes::splat(self.near)).bits()
             & Lanes::splat(GRADIENT_SQUARED_MIN).below(gradient.dot(gradient)).bits();
         let doubtful = near
@@ -108,8 +110,11 @@ impl Direction<'_> {
             let i = found.trailing_zeros() as usize;
             found &= found - 1;
             let ball = RoundPoint { centre: eight.points.lane(i), radius: 0.0 };
-            let candidate = self.candidate(ball, answers.normal.lane(i), answers.distance.0[i], index);
-            candidates.push(Candidate { rough: answers.inset == 0.0, ..candidate });
+            // What lies on a plane is pushed off it at a right angle, whatever interpolation says of its rim.
+            let flat = matches!(self.surface, Surface::Field(_)) && eight.facing_max.0[i] <= FLAT_MAX;
+            let normal = if flat { -eight.outwards.lane(i) } else { answers.normal.lane(i) };
+            let candidate = self.candidate(ball, normal, answers.distance.0[i], index);
+            candidates.push(Candidate { rough: answers.inset == 0.0 && !flat, ..candidate });
         }
     }
 

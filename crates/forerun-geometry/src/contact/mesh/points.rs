@@ -97,6 +97,7 @@ fn cylinder(c: &Cylinder, gradient: impl Fn(Vec3) -> Vec3, points: &mut Vec<Samp
         points.extend(RIM.map(|(x, z)| Sample {
             point: Vec3::new(x * c.radius, end * c.half_height, z * c.radius),
             normal: Vec3::new(x, end, z).normalize(),
+            facing_max: Sample::SHARP,
         }));
     }
     for k in 0..=LINE_PARTS {
@@ -115,14 +116,15 @@ fn cylinder(c: &Cylinder, gradient: impl Fn(Vec3) -> Vec3, points: &mut Vec<Samp
             } else {
                 Vec3::ZERO
             };
-            points.push(Sample { point: on_axis + out * c.radius, normal: (out + end).normalize() });
+            let point = on_axis + out * c.radius;
+            points.push(Sample { point, normal: (out + end).normalize(), facing_max: Sample::SHARP });
         }
     }
 }
 
 fn vertex(point: Vec3, normal: Vec3, region: &Region, points: &mut Vec<Sample>) {
     if point.distance_squared(region.centre) <= region.radius * region.radius {
-        points.push(Sample { point, normal });
+        points.push(Sample { point, normal, facing_max: Sample::SHARP });
     }
 }
 
@@ -143,5 +145,9 @@ fn edge([a, b]: [Vec3; 2], normal: Vec3, (region, spacing): (&Region, f32), poin
     let part = |distance: f32| (distance / length * parts).clamp(0.0, parts);
     let (enter, leave) = (part(middle - half).ceil() as u32, part(middle + half) as u32);
     let inner = enter.max(1)..=leave.min((parts as u32).saturating_sub(1));
-    points.extend(inner.map(|k| Sample { point: a + along * (k as f32 / parts), normal }));
+    points.extend(inner.map(|k| Sample {
+        point: a + along * (k as f32 / parts),
+        normal,
+        facing_max: Sample::SHARP,
+    }));
 }

@@ -1,0 +1,48 @@
+//! A steady step works in the memory of the step before.
+#![allow(unsafe_code, reason = "to count allocations is to be the allocator")]
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use common::{pyramid, run, world_of};
+
+thread_local! {
+    static COUNT: Cell<u32> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counting.
+struct Counting;
+
+// SAFETY: it does what the system's does.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(place, layout) }
+    }
+
+    unsafe fn realloc(&self, place: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        unsafe { System.realloc(place, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_steady_step_allocates_nothing() {
+    for rest_seconds in [0.0, 10.0] {
+        let mut world = world_of(&pyramid(15));
+        world.environment.settings.rest_seconds = rest_seconds;
+        run(&mut world, 20);
+        let before = COUNT.get();
+        run(&mut world, 50);
+        assert_eq!(COUNT.get() - before, 0, "rest after {rest_seconds} s");
+    }
+}
