@@ -37,6 +37,8 @@ pub(crate) struct Hard<'a, K: Kind> {
 /// Memory for the descent.
 #[derive(Debug, Default)]
 pub(crate) struct Descent {
+    /// Velocities for the standing pass.
+    pub(crate) standing: Vec<Row>,
     /// Bodies that the blocks move, rising.
     bodies: Vec<u32>,
     /// Before the sweep.

@@ -35,7 +35,9 @@ impl StandingPass<'_> {
             return;
         }
         take_off_momentum(blocks, details);
-        let mut velocities = self.kicks.to_vec();
+        let mut velocities = std::mem::take(&mut self.descent.standing);
+        velocities.clear();
+        velocities.extend_from_slice(self.kicks);
         apply_impulses(blocks, cells(&mut velocities));
         let islands = self.at.islands;
         if self.guard.gains(self.at, self.kicks, &velocities, Guarded::Guess) {
@@ -44,6 +46,7 @@ impl StandingPass<'_> {
         }
         let sweeps = Sweeps { count: sweeps, law: Law::Cone };
         self.descent.run(Hard { at: self.at, blocks, details }, &mut velocities, sweeps);
+        self.descent.standing = velocities;
         add_momentum(blocks, details);
     }
 }
