@@ -3,6 +3,8 @@
 //! Contacts are ordered by level, then by colour: within a colour no dynamic body appears twice, so that the lanes of a block never write the
 //! same body, nor do the blocks of a run. The colour of a contact depends on its island alone; which lane it lands in does not change its result.
 
+use std::ops::Range;
+
 use super::points::{Kind, Point, Side};
 use super::shares::Shares;
 use crate::lanes::{LANES, LaneMask, Lanes, Portable, Record, V8};
@@ -168,15 +170,34 @@ impl<F: Lanes> Detail<F> {
     }
 }
 
+/// What an island needs. Of the island alone, so that it gets the same in any company.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Class {
+    /// No more than others.
+    Easy,
+    /// More passes that push out overlap.
+    Overlapping,
+    /// Also, to find what its contacts carry: the load pass fails to place its weight. It moves fast, so that it is not worth much trouble.
+    Rushing,
+    /// The same, but it moves slowly or not at all: heaps.
+    Heap,
+    /// As exact a solution as can be had: the same, and it is high and small (arches, card houses).
+    Delicate,
+}
+
+impl Class {
+    pub(crate) const COUNT: usize = 5;
+}
+
 /// The blocks of one kind, in the order in which they are solved.
 #[derive(Debug, Default)]
 pub(crate) struct Arranged<K: Kind> {
-    /// First those of easy islands, then those of hard ones.
+    /// By the class of their island.
     pub(crate) blocks: Vec<Block<Portable, K>>,
     /// One a block.
     pub(crate) details: Vec<Detail<Portable>>,
-    /// How many blocks are of easy islands.
-    pub(crate) easy: usize,
+    /// How many blocks are of a class, or of one before it.
+    pub(crate) ends: [usize; Class::COUNT],
     /// Where each level and colour begins among the blocks: blocks of one run share no body that impulses move.
     pub(crate) runs: Vec<u32>,
     /// How many blocks have been added; the others are memory to be used again.
@@ -186,9 +207,19 @@ pub(crate) struct Arranged<K: Kind> {
 }
 
 impl<K: Kind> Arranged<K> {
+    /// Where the blocks of a class are.
+    pub(crate) fn of(&self, class: Class) -> Range<usize> {
+        let start = match class {
+            Class::Easy => 0,
+            _ => self.ends[class as usize - 1],
+        };
+        start..self.ends[class as usize]
+    }
+
     /// Forgets all blocks but not their memory.
     pub(crate) fn clear(&mut self) {
-        (self.easy, self.count) = (0, 0);
+        self.ends = [0; Class::COUNT];
+        self.count = 0;
         self.runs.clear();
         self.shares.clear();
     }

@@ -9,6 +9,7 @@ mod blocks;
 mod bodies;
 mod collisions;
 mod contact_graph;
+mod descent;
 mod energy_guard;
 mod flight;
 mod impulses;

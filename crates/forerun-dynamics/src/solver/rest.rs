@@ -17,6 +17,8 @@ const SHALLOW_REST: u32 = 4;
 
 /// A body that overlaps deeper than this part of its half thickness does not come to rest, however little that is.
 const REST_PART: f32 = 0.1;
+/// But one that overlaps by less than so many times what is allowed does: nobody pushes it on.
+const ROOM: f32 = 1.5;
 /// A body that is farther than this from all others has nothing to rest on. Metres.
 const REST_TOUCH_M: f32 = 0.001;
 
@@ -87,7 +89,8 @@ impl Resting<'_> {
         let mut any = false;
         for (member, ending) in self.members.iter().zip(endings.iter_mut()) {
             let body = member.body;
-            let most = settings.rest_overlap_m.min(REST_PART * body.half_thickness);
+            let room = ROOM * settings.overlap_allowed_m;
+            let most = settings.rest_overlap_m.min(room.max(REST_PART * body.half_thickness));
             ending.deep = body.is_dynamic() && ending.overlap > most;
             any |= ending.deep;
         }

@@ -6,10 +6,11 @@ use std::cell::Cell;
 
 use rayon::prelude::*;
 
-use super::blocks::{Arranged, Block, Detail};
+use super::blocks::{Arranged, Block, Class, Detail};
 use super::bodies::Bodies;
 use super::collisions::{Ahead, Moving, resolve_collisions};
-use super::energy_guard::{EnergyGuard, Guarded};
+use super::descent::{Descent, Hard, Sweeps};
+use super::energy_guard::{EnergyGuard, Guarded, Guarding};
 use super::impulses::add_substep;
 use super::islands::Islands;
 use super::manifolds::Source;
@@ -18,6 +19,7 @@ use super::points::{Flat, Kind, Uneven};
 use super::prepare::{Common, prepare};
 use super::shared::{Least, Shared};
 use super::shock::{propagate_classic, propagate_shock};
+use super::standing::StandingPass;
 use super::sweep::{relax, sweep};
 use super::team::Team;
 use super::warm_start::{apply_impulses, remove_momentum};
@@ -75,6 +77,34 @@ impl Rows {
         self.uneven.pass(team, velocities, |blocks, _, rows| sweep(blocks, rows));
     }
 
+    /// Finds what the contacts of a class carry.
+    pub(crate) fn stand(&mut self, class: Class, standing: &mut StandingPass, sweeps: u32) {
+        let chosen = self.flat.of(class);
+        let Arranged { blocks, details, .. } = &mut self.flat;
+        standing.run(&mut blocks[chosen.clone()], &mut details[chosen], sweeps);
+        let chosen = self.uneven.of(class);
+        let Arranged { blocks, details, .. } = &mut self.uneven;
+        standing.run(&mut blocks[chosen.clone()], &mut details[chosen], sweeps);
+    }
+
+    /// Sweeps delicate islands some more.
+    pub(crate) fn descend(
+        &mut self,
+        descent: &mut Descent,
+        at: Guarding,
+        velocities: &mut [Row],
+        sweeps: Sweeps,
+    ) {
+        let chosen = self.flat.of(Class::Delicate);
+        let Arranged { blocks, details, .. } = &mut self.flat;
+        let hard = Hard { at, blocks: &mut blocks[chosen.clone()], details: &details[chosen] };
+        descent.run(hard, velocities, sweeps);
+        let chosen = self.uneven.of(Class::Delicate);
+        let Arranged { blocks, details, .. } = &mut self.uneven;
+        let hard = Hard { at, blocks: &mut blocks[chosen.clone()], details: &details[chosen] };
+        descent.run(hard, velocities, sweeps);
+    }
+
     /// Returns the least separation that was met. Metres.
     pub(crate) fn relax(&mut self, velocities: &mut [Row], ahead: &Ahead, team: &Team) -> f32 {
         let least = Least::default();
@@ -107,13 +137,15 @@ impl Rows {
         });
     }
 
-    /// One pass over the blocks of hard islands.
-    pub(crate) fn propagate_hard_shock(&self, displacements: &mut [Row], settings: &StepSettings) {
+    /// One pass over the blocks of islands that are not easy.
+    pub(crate) fn propagate_more_shock(&self, displacements: &mut [Row], settings: &StepSettings) {
         let displacements = cells(displacements);
-        let Arranged { blocks, details, easy, .. } = &self.flat;
-        propagate_shock(&blocks[*easy..], &details[*easy..], displacements, settings);
-        let Arranged { blocks, details, easy, .. } = &self.uneven;
-        propagate_shock(&blocks[*easy..], &details[*easy..], displacements, settings);
+        let Arranged { blocks, details, .. } = &self.flat;
+        let start = self.flat.of(Class::Overlapping).start;
+        propagate_shock(&blocks[start..], &details[start..], displacements, settings);
+        let Arranged { blocks, details, .. } = &self.uneven;
+        let start = self.uneven.of(Class::Overlapping).start;
+        propagate_shock(&blocks[start..], &details[start..], displacements, settings);
     }
 
     pub(crate) fn propagate_classic(

@@ -18,6 +18,26 @@ dispatched! {
     pub(crate) fn sweep<K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &[Cell<Row>]) => sweep_lanes
 }
 
+/// What limits the friction of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Law {
+    /// What presses (Coulomb).
+    Coulomb,
+    /// The same cone, but friction that wants more than it has presses the bodies together: as if they could slide only by parting. Sweeps by this
+    /// law come to the one least kinetic energy, which is none wherever any forces within the cones keep the bodies in place (Anitescu 2006); by
+    /// Coulomb's they may end with an arch that slips, though it could stand.
+    Cone,
+}
+
+dispatched! {
+    /// A sweep down and one up, so that the two together are symmetric. Gaps as in [`sweep`].
+    pub(crate) fn sweep_both_ways<K: Kind>(
+        blocks: &mut [Block<Portable, K>],
+        velocities: &[Cell<Row>],
+        law: Law,
+    ) => both_ways_lanes
+}
+
 dispatched! {
     /// The last sweep of a substep, after the bodies have moved: finds anew how fast each point may approach.
     ///
@@ -37,7 +57,20 @@ fn sweep_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities:
     for block in recast_mut::<F, BlocksOf<K>>(blocks) {
         let mut v = Sides::gather(block, velocities);
         let allowed = block.allowed;
-        solve(block, &mut v, &allowed);
+        solve(block, &mut v, &allowed, Law::Coulomb);
+        v.scatter(block, velocities);
+    }
+}
+
+#[inline(always)]
+fn both_ways_lanes<F: Lanes, K: Kind>(blocks: &mut [Block<Portable, K>], velocities: &[Cell<Row>], law: Law) {
+    let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
+    let count = blocks.len();
+    for k in 0..2 * count {
+        let block = &mut blocks[if k < count { count - 1 - k } else { k - count }];
+        let mut v = Sides::gather(block, velocities);
+        let allowed = block.allowed;
+        solve(block, &mut v, &allowed, law);
         v.scatter(block, velocities);
     }
 }
@@ -65,7 +98,7 @@ fn relax_lanes<F: Lanes, K: Kind>(
         if ahead.bounces {
             spare(block, detail, &v, ahead, &mut allowed);
         }
-        solve(block, &mut v, &allowed);
+        solve(block, &mut v, &allowed, Law::Coulomb);
         v.scatter(block, velocities);
     }
     for gap in least.to_array() {
@@ -100,7 +133,7 @@ fn spare<F: Lanes, K: Kind>(
 /// All points together, then one by one, then friction. Normals before friction: the other order keeps a sliding block flatter, and lets rough
 /// pyramids of sixty rows drift by a third of a metre (measured).
 #[inline(always)]
-fn solve<F: Lanes, K: Kind>(block: &mut Block<F, K>, v: &mut Sides<F>, allowed: &[F; 4]) {
+fn solve<F: Lanes, K: Kind>(block: &mut Block<F, K>, v: &mut Sides<F>, allowed: &[F; 4], law: Law) {
     let relative = v.relative(block);
     let mut closing = [F::zero(); 4];
     for q in 0..4 {
@@ -114,14 +147,42 @@ fn solve<F: Lanes, K: Kind>(block: &mut Block<F, K>, v: &mut Sides<F>, allowed: 
     for q in 0..4 {
         changes[q] = block.impulses[q] - before[q];
     }
-    let slip = slip(block, &relative, &changes);
-    let sum = sum(&block.impulses);
+    let mut slip = self::slip(block, &relative, &changes);
+    let mut sum = self::sum(&block.impulses);
+    if law == Law::Cone {
+        let share = wedge(block, &slip, sum);
+        for q in 0..4 {
+            let share = block.is_point(q).select(share, F::zero());
+            block.impulses[q] += share;
+            changes[q] += share;
+        }
+        slip = self::slip(block, &relative, &changes);
+        sum = self::sum(&block.impulses);
+    }
     let rubbed = friction(&block.friction, &slip, sum, &block.friction.impulses);
     let old = block.friction.impulses;
     let mut push = Point::push(&block.points, &changes);
     push.rub([rubbed[0] - old[0], rubbed[1] - old[1]], rubbed[2] - old[2]);
     block.friction.impulses = rubbed;
     v.push(block, &push);
+}
+
+/// By how much all points alike are to be pressed because the friction lacks it, up to where more would cost more energy than the friction takes.
+#[inline(always)]
+fn wedge<F: Lanes, K: Kind>(block: &Block<F, K>, slip: &[F; 3], sum: F) -> F {
+    let rows = &block.friction;
+    let [k11, k12, k22] = rows.inverse_k;
+    let old = &rows.impulses;
+    let (x, y) = (old[0] - (k11 * slip[0] + k12 * slip[1]), old[1] - (k12 * slip[0] + k22 * slip[1]));
+    let lacking = ((x * x + y * y).sqrt() - sum * rows.kinetic_coefficient).max(F::zero());
+    let mut count = F::zero();
+    for q in 0..4 {
+        count += block.is_point(q).select(F::one(), F::zero());
+    }
+    // Least s² / 2 g + (lacking - c s)² / 2 k, with g the gain of the mean row and k that of the friction.
+    let (c, k) = (rows.kinetic_coefficient * count, F::splat(0.5) * (k11 + k22));
+    let share = block.mean_gain * c * lacking / (k + block.mean_gain * c * c).max(F::splat(1e-20));
+    sum.gt(F::zero()).select(share, F::zero())
 }
 
 /// How a contact slips along its tangents and twists about its normal, after such impulses at its points.
