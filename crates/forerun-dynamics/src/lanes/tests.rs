@@ -1,3 +1,5 @@
+//! Lanes, tested: every form gives the bits of plain arrays.
+
 use super::*;
 
 /// A little of everything, on awkward numbers.

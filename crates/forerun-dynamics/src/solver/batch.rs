@@ -7,13 +7,14 @@ use forerun_geometry::{Manifold, Shape, Vec3};
 use super::arrange::{Arranger, Order};
 use super::blocks::Class;
 use super::bodies::Bodies;
+use super::classes::{Classes, Evenness, Islanders};
 use super::collisions::{Ahead, Moving};
 use super::contact_graph::ContactGraph;
 use super::descent::{Descent, Sweeps};
 use super::energy_guard::{EnergyGuard, Guarded, Guarding};
 use super::impulses::ImpulseSums;
 use super::islands::Islands;
-use super::load::{LoadPass, Loads, Strain};
+use super::load::{LoadPass, Loads};
 use super::manifolds::Source;
 use super::positions::integrate_positions;
 use super::prepare::Common;
@@ -29,23 +30,12 @@ use crate::narrow_phase::Contact;
 use crate::scratch::{emptied, fill};
 use crate::{BodyState, Environment, Member, ShockPropagation, StepSettings};
 
-/// An island is hard when the load pass leaves more than this part of its weight to the sweeps: stacks and pyramids leave none, a heap most of it.
-const HARD_PART: f64 = 0.1;
-
-/// Root mean square of the speeds in an island; what moves faster does not stand. m/s
-const SLOW: f64 = 0.5;
 /// Sweeps that find what the contacts of fast hard islands carry.
 const RUSHING_SWEEPS: u32 = 6;
-/// Hard islands that are so high and have so few contacts are delicate: arches, card houses. It takes many sweeps to find what keeps them up, and
-/// as they are small that costs little: 0.1 ms for an arch of 17 stones.
-const DELICATE_LEVELS: u32 = 4;
-const DELICATE_CONTACTS: u32 = 192;
 /// Sweeps, each down and up, that find what the contacts of delicate islands carry, and that solve them in each substep. With 24 and 8 an arch that
 /// needs nine tenths of its friction sinks by 0.2 m before it rests, with 32 and 8 by 4 mm.
 const DELICATE_SWEEPS: u32 = 32;
 const DELICATE_SUBSTEP_SWEEPS: u32 = 8;
-/// An island overlaps when some contact does by so many times what is allowed.
-const OVERLAPPING: f32 = 2.0;
 /// So many more passes push the overlap out of islands that overlap, and of hard ones. A dropped stack of 20 comes to rest after 125 frames instead of
 /// 273, a Jenga tower that starts 5 cm in the ground with overlaps of 1.6 mm instead of 5.7.
 const MORE_PUSHES: usize = 2;
@@ -82,52 +72,6 @@ impl<'a> ContactList<'a> {
     }
 }
 
-/// What the classes of islands follow from.
-#[derive(Clone, Copy, Debug, Default)]
-struct IslandSums {
-    weight: f64,
-    /// The part of the weight that the load pass does not place.
-    lost: f64,
-    mass: f64,
-    /// Twice the energy of the centres of mass.
-    motion: f64,
-    contacts: u32,
-    /// The highest level of a body that something supports.
-    top: u32,
-    /// The deepest overlap. Metres.
-    overlap: f32,
-}
-
-impl IslandSums {
-    fn add(&mut self, strain: &Strain, member: &Member) {
-        let mass = 1.0 / f64::from(member.body.inverse_mass);
-        self.weight += f64::from(strain.weight);
-        self.lost += f64::from(strain.lost);
-        self.mass += mass;
-        self.motion += mass * f64::from(member.state.velocity.length_squared());
-    }
-
-    /// What the island needs; it overlaps where some contact is deeper than `deep`.
-    fn class(&self, deep: f32) -> Class {
-        if self.lost <= HARD_PART * self.weight {
-            if self.overlap > deep { Class::Overlapping } else { Class::Easy }
-        } else if self.motion > SLOW * SLOW * self.mass {
-            Class::Rushing
-        } else if self.contacts <= DELICATE_CONTACTS && self.top >= DELICATE_LEVELS {
-            Class::Delicate
-        } else {
-            Class::Heap
-        }
-    }
-}
-
-/// Whether all points of every manifold of an island push the same way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Evenness {
-    Flat,
-    Uneven,
-}
-
 /// Some islands, with the bodies that do not yield but that they touch. Kept from step to step for its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Batch<'a> {
@@ -158,12 +102,11 @@ pub(crate) struct Batch<'a> {
     endings: Vec<Ending>,
     rest: RestScratch,
     bounces: bool,
+    /// Whether a kinematic body turns.
+    carries: bool,
     /// By island: whether a moving kinematic body touches it.
     driven: Vec<bool>,
-    /// By island.
-    sums: Vec<IslandSums>,
-    /// By island: see [`Batch::classify`].
-    classes: Vec<(Class, Evenness)>,
+    classes: Classes,
     /// By evenness and class: the contacts.
     chosen: [[Vec<u32>; Class::COUNT]; 2],
     /// By contact: by how much the solver expects it to lie deeper at the end of the frame, where that may be cut finer. Metres.
@@ -178,6 +121,8 @@ impl<'a> Batch<'a> {
         self.dynamic.clear();
         self.dynamic.extend(self.members.iter().map(|m| m.body.is_dynamic()));
         self.bounces = self.members.iter().any(|m| m.body.material.restitution > 0.0);
+        let turns = |m: &Member| m.drives() && m.state.angular_velocity != Vec3::ZERO;
+        self.carries = self.members.iter().any(turns);
         self.impulses.clear();
         self.find_driven();
     }
@@ -205,8 +150,8 @@ impl<'a> Batch<'a> {
             endings: self.endings,
             rest: self.rest,
             bounces: false,
+            carries: false,
             driven: self.driven,
-            sums: self.sums,
             classes: self.classes,
             chosen: self.chosen,
             overlap_growth: self.overlap_growth,
@@ -258,11 +203,18 @@ impl<'a> Batch<'a> {
 
     /// Finds a lane for every contact: flat islands apart from uneven ones, and each class by itself.
     fn arrange(&mut self) {
-        self.classify();
+        self.classes.find(&Islanders {
+            members: &self.members,
+            contacts: ContactList { ends: &self.ends, found: self.found },
+            islands: &self.islands,
+            graph: &self.graph,
+            strain: &self.loads.strain,
+            overlap_allowed_m: self.environment.settings.overlap_allowed_m,
+        });
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.iter_mut().flatten().for_each(Vec::clear);
         for (k, ends) in self.ends.iter().enumerate() {
-            let (class, evenness) = self.classes[self.island_of(ends)];
+            let (class, evenness) = self.classes.of(self.islands.of(ends));
             chosen[evenness as usize][class as usize].push(k as u32);
         }
         let order = Order { graph: &self.graph, contacts: &self.ends, yields: &self.dynamic };
@@ -287,48 +239,6 @@ impl<'a> Batch<'a> {
         self.chosen = chosen;
     }
 
-    /// Finds the class of each island, and whether points of a mesh's manifold push different ways. (So may those of two capsules that lie alongside
-    /// each other, by a few degrees: their mean serves.)
-    fn classify(&mut self) {
-        fill(&mut self.sums, self.islands.count() + 1, IslandSums::default());
-        for (i, (strain, member)) in self.loads.strain.iter().zip(&self.members).enumerate() {
-            if member.body.is_dynamic() {
-                self.sums[self.islands.root(i)].add(strain, member);
-            }
-        }
-        for &i in &self.graph.order {
-            let top = &mut self.sums[self.islands.root(i as usize)].top;
-            *top = (*top).max(self.graph.levels()[i as usize]);
-        }
-        for (ends, separation) in self.ends.iter().zip(self.graph.deepest()) {
-            let sums = &mut self.sums
-                [self.islands.root(ends.first as usize).min(self.islands.root(ends.second as usize))];
-            sums.contacts += 1;
-            sums.overlap = sums.overlap.max(-separation);
-        }
-        let deep = OVERLAPPING * self.environment.settings.overlap_allowed_m;
-        self.classes.clear();
-        self.classes.extend(self.sums.iter().map(|sums| (sums.class(deep), Evenness::Flat)));
-        if !self.members.iter().any(|m| is_mesh(&m.body.shape)) {
-            return;
-        }
-        for (k, ends) in self.ends.iter().enumerate() {
-            let points = self.contacts().manifold(k).points();
-            let of_mesh = |i: u32| is_mesh(&self.members[i as usize].body.shape);
-            let differ = points.iter().any(|p| p.normal != points[0].normal);
-            if differ && (of_mesh(ends.first) || of_mesh(ends.second)) {
-                let island = self.island_of(ends);
-                self.classes[island].1 = Evenness::Uneven;
-            }
-        }
-    }
-
-    /// The number of the island that a contact belongs to.
-    fn island_of(&self, ends: &Ends) -> usize {
-        // Bodies that do not yield have the highest number.
-        self.islands.root(ends.first as usize).min(self.islands.root(ends.second as usize))
-    }
-
     /// Stage 4: substeps of bounces, gravity, warm start and sweeps.
     pub(crate) fn resolve_contacts(&mut self) {
         let settings = self.environment.settings;
@@ -342,12 +252,13 @@ impl<'a> Batch<'a> {
         rows.stand(Class::Rushing, &mut standing, hard.min(RUSHING_SWEEPS));
         rows.stand(Class::Heap, &mut standing, hard);
         rows.stand(Class::Delicate, &mut standing, DELICATE_SWEEPS);
-        let (guard, descent, bounces) = (&mut self.guard, &mut self.descent, self.bounces);
+        let (guard, descent) = (&mut self.guard, &mut self.descent);
+        let (bounces, carries) = (self.bounces, self.carries);
         Team::gather(rows.share_count(), |team| {
             for substep in 0..settings.substeps {
                 if bounces {
                     let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
-                    let ahead = ahead(displacements, kicks, &settings, bounces);
+                    let ahead = ahead(displacements, kicks, &settings, (bounces, carries));
                     let velocities = cells(velocities);
                     rows.resolve_collisions(&mut Moving { velocities, ahead, bounced: &mut *impulses });
                 }
@@ -368,7 +279,7 @@ impl<'a> Batch<'a> {
                 keep_energy(guard, at, rows, bodies, Guarded::Result);
                 displace(bodies, h);
                 let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
-                let ahead = ahead(displacements, kicks, &settings, bounces);
+                let ahead = ahead(displacements, kicks, &settings, (bounces, carries));
                 *least_gap = rows.relax(velocities, &ahead, team);
                 note_pushes(bodies);
                 rows.add_impulses(impulses);
@@ -458,7 +369,7 @@ fn ahead<'a>(
     displacements: &'a [Row],
     kicks: &'a [Row],
     settings: &StepSettings,
-    bounces: bool,
+    (bounces, carries): (bool, bool),
 ) -> Ahead<'a> {
     Ahead {
         displacements,
@@ -466,6 +377,7 @@ fn ahead<'a>(
         substep_seconds: settings.frame_seconds / settings.substeps as f32,
         substeps: settings.substeps as f32,
         bounces,
+        carries,
     }
 }
 

@@ -87,6 +87,8 @@ pub(crate) struct Detail<F> {
     pub(crate) second_yields: F,
     /// The part of the first guess that is momentum: it is taken off before the second substep.
     pub(crate) momentum: Impulses<F>,
+    /// By how much the arm of each side turns in a substep, where it is that of a kinematic body; along the contact's axes.
+    pub(crate) carries: [V8<F>; 2],
 }
 
 /// [`Block`]s, in whatever form their numbers are.
@@ -158,6 +160,7 @@ impl<F: Lanes> Detail<F> {
             first_yields: z,
             second_yields: z,
             momentum: Impulses { points: [z; 4], friction: [z; 3] },
+            carries: [V8::zero(); 2],
         }
     }
 

@@ -36,6 +36,8 @@ pub(crate) struct Ahead<'a> {
     pub(crate) substeps: f32,
     /// Whether any contact may bounce.
     pub(crate) bounces: bool,
+    /// Whether any body turns of its own accord.
+    pub(crate) carries: bool,
 }
 
 dispatched! {

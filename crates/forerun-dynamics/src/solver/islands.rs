@@ -1,5 +1,7 @@
 //! Islands: dynamic bodies joined by contacts. Fixed and kinematic bodies belong to every island that they touch, and join none.
 
+use super::batch::Ends;
+
 /// For each body the lowest body of its island.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Roots {
@@ -91,6 +93,12 @@ impl Islands {
     /// The number of the island that body `i` is in.
     pub(crate) fn root(&self, i: usize) -> usize {
         self.number[i] as usize
+    }
+
+    /// The number of the island that a contact belongs to.
+    pub(crate) fn of(&self, ends: &Ends) -> usize {
+        // Bodies that do not yield have the highest number.
+        self.root(ends.first as usize).min(self.root(ends.second as usize))
     }
 
     /// By body: the number of its island.

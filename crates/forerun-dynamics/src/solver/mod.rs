@@ -7,9 +7,11 @@
 mod arrange;
 mod blocks;
 mod bodies;
+mod classes;
 mod collisions;
 mod contact_graph;
 mod descent;
+mod ends;
 mod energy_guard;
 mod flight;
 mod impulses;

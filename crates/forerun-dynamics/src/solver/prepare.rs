@@ -4,17 +4,15 @@ use forerun_geometry::Vec3;
 
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf, Impulses};
 use super::bodies::Bodies;
+use super::ends::{End, EndPair, along};
 use super::manifolds::{Manifolds, Source};
-use super::points::{Kind, Point, Push, Side};
+use super::points::{Kind, Point, Push};
 use super::sweep::coupling;
-use crate::lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched, recast_mut};
+use crate::lanes::{LaneMask, Lanes, Portable, V8, dispatched, recast_mut};
 
 const TINY: f32 = 1e-12;
 /// Points this much higher than the lowest have no part in the friction. Metres.
 const NEAR_M: f32 = 0.002;
-/// A point contact twists as if it were a patch of this part of the thinner body's half thickness: a ball that spins in its place comes to stand. (A ball of
-/// 0.2 m at 10 rad/s needs 16 s with friction 0.5; rolling is not hindered.)
-const PATCH_PART: f32 = 0.01;
 /// Below this rise a contact has no vertical share to speak of.
 const RISE_MIN: f32 = 0.2;
 
@@ -48,9 +46,9 @@ fn prepare_lanes<F: Lanes, K: Kind>(
     let blocks = recast_mut::<F, BlocksOf<K>>(blocks);
     for (block, detail) in blocks.iter_mut().zip(recast_mut::<F, DetailsOf>(details)) {
         let manifolds = Manifolds::gather::<K>(detail, source);
-        let ends = Ends {
-            first: End::gather(bodies, &block.first_row),
-            second: End::gather(bodies, &block.second_row),
+        let ends = EndPair {
+            first: End::gather(bodies, &block.first_row, common.substep_seconds),
+            second: End::gather(bodies, &block.second_row, common.substep_seconds),
         };
         let surface = ends.surface();
         detail.first_answers = ends.first.answers;
@@ -60,6 +58,8 @@ fn prepare_lanes<F: Lanes, K: Kind>(
         ends.share_yield(detail, &manifolds, F::splat(common.shock_yield));
         let middle = Middle::of(&manifolds);
         fill_places(block, &manifolds, &ends, &middle);
+        let axes = block.axes();
+        detail.carries = [ends.first.carry(middle.place, &axes), ends.second.carry(middle.place, &axes)];
         let pairs = Pairs::of(block, &ends);
         fill_points(block, detail, &manifolds, &pairs, F::splat(1.0 / common.substep_seconds));
         fill_friction(block, &pairs);
@@ -67,104 +67,6 @@ fn prepare_lanes<F: Lanes, K: Kind>(
         block.friction.kinetic_coefficient = surface.friction;
         block.friction.radius = middle.radius.max(surface.patch);
         guess(block, detail, &manifolds, &middle, common.up);
-    }
-}
-
-/// One body of each contact.
-struct End<F> {
-    position: V8<F>,
-    axes: [V8<F>; 3],
-    inertia: V8<F>,
-    scale: F,
-    answers: F,
-    static_friction: F,
-    friction: F,
-    restitution: F,
-    half_thickness: F,
-    inverse_mass: F,
-}
-
-struct Ends<F> {
-    first: End<F>,
-    second: End<F>,
-}
-
-/// What two materials make together.
-struct Surface<F> {
-    static_friction: F,
-    friction: F,
-    restitution: F,
-    patch: F,
-}
-
-impl<F: Lanes> End<F> {
-    #[inline(always)]
-    fn gather(bodies: &Bodies, index: &[u32; LANES]) -> Self {
-        let [x, y, z, scale, ix, iy, iz, answers] = F::gather(&bodies.centres, index);
-        let [ux, uy, uz, vx, vy, vz, ..] = F::gather(&bodies.axes, index);
-        let [static_friction, friction, restitution, half_thickness, inverse_mass, ..] =
-            F::gather(&bodies.surfaces, index);
-        let (u, v) = (V8 { x: ux, y: uy, z: uz }, V8 { x: vx, y: vy, z: vz });
-        End {
-            position: V8 { x, y, z },
-            axes: [u, v, u.cross(v)],
-            inertia: V8 { x: ix, y: iy, z: iz },
-            scale,
-            answers,
-            static_friction,
-            friction,
-            restitution,
-            half_thickness,
-            inverse_mass,
-        }
-    }
-
-    /// I^(-1/2) Rᵀ w
-    #[inline(always)]
-    fn scaled(&self, w: V8<F>) -> V8<F> {
-        V8 { x: self.axes[0].dot(w), y: self.axes[1].dot(w), z: self.axes[2].dot(w) }.times(self.inertia)
-    }
-
-    #[inline(always)]
-    fn side(&self, centre: V8<F>, axes: &[V8<F>; 3]) -> Side<F> {
-        Side {
-            scale: self.scale,
-            offset: along(axes, centre - self.position),
-            turns: [self.scaled(axes[0]), self.scaled(axes[1]), self.scaled(axes[2])],
-        }
-    }
-}
-
-#[inline(always)]
-fn along<F: Lanes>(axes: &[V8<F>; 3], v: V8<F>) -> V8<F> {
-    V8 { x: axes[0].dot(v), y: axes[1].dot(v), z: axes[2].dot(v) }
-}
-
-impl<F: Lanes> Ends<F> {
-    /// Friction is the geometric mean, restitution the larger of the two.
-    #[inline(always)]
-    fn surface(&self) -> Surface<F> {
-        let (a, b) = (&self.first, &self.second);
-        Surface {
-            static_friction: (a.static_friction * b.static_friction).sqrt(),
-            friction: (a.friction * b.friction).sqrt(),
-            restitution: a.restitution.max(b.restitution),
-            patch: F::splat(PATCH_PART) * a.half_thickness.min(b.half_thickness),
-        }
-    }
-
-    /// What lies below moves less than its mass says, and never more than what lies above.
-    #[inline(always)]
-    fn share_yield(&self, detail: &mut Detail<F>, manifolds: &Manifolds<F>, shock_yield: F) {
-        let (low, high) = (manifolds.levels[0], manifolds.levels[1]);
-        let (a, b) = (self.first.inverse_mass, self.second.inverse_mass);
-        // 1, or less where the lower body is the lighter one: the ratio of the inverse masses.
-        let below = |own: F, other: F| {
-            let lighter = other.lt(own);
-            shock_yield * lighter.select(other / lighter.select(own, F::one()), F::one())
-        };
-        detail.first_yields = low.lt(high).select(below(a, b), F::one());
-        detail.second_yields = high.lt(low).select(below(b, a), F::one());
     }
 }
 
@@ -207,7 +109,7 @@ impl<F: Lanes> Middle<F> {
 fn fill_places<F: Lanes, K: Kind>(
     block: &mut Block<F, K>,
     manifolds: &Manifolds<F>,
-    ends: &Ends<F>,
+    ends: &EndPair<F>,
     middle: &Middle<F>,
 ) {
     let normal = manifolds.normal;
@@ -241,7 +143,7 @@ struct Pairs<F> {
 
 impl<F: Lanes> Pairs<F> {
     #[inline(always)]
-    fn of<K: Kind>(block: &Block<F, K>, ends: &Ends<F>) -> Self {
+    fn of<K: Kind>(block: &Block<F, K>, ends: &EndPair<F>) -> Self {
         let answers = [ends.first.answers, ends.second.answers];
         let (sa, sb) = (ends.first.scale, ends.second.scale);
         let linear = answers[0] * (sa * sa) + answers[1] * (sb * sb);

@@ -8,7 +8,7 @@ use super::blocks::{Block, BlocksOf, Detail, DetailsOf, Friction};
 use super::collisions::Ahead;
 use super::points::{Kind, Point, Relative, sum, weighted};
 use super::sides::Sides;
-use crate::lanes::{LaneMask, Lanes, Portable, Row, dispatched, recast, recast_mut};
+use crate::lanes::{LaneMask, Lanes, Portable, Row, V8, dispatched, recast, recast_mut};
 
 /// Faster than anything approaches. m/s
 const FREE_APPROACH: f32 = 1e6;
@@ -87,6 +87,10 @@ fn relax_lanes<F: Lanes, K: Kind>(
     let per_second = F::splat(1.0 / ahead.substep_seconds);
     let mut least = F::splat(f32::MAX);
     for (block, detail) in blocks.iter_mut().zip(recast::<F, DetailsOf>(details)) {
+        if ahead.carries {
+            block.first.offset = turned(block.first.offset, detail.carries[0]);
+            block.second.offset = turned(block.second.offset, detail.carries[1]);
+        }
         let mut v = Sides::gather(block, velocities);
         let moved = Sides::gather_still(block, ahead.displacements).relative(block);
         for q in 0..4 {
@@ -103,6 +107,17 @@ fn relax_lanes<F: Lanes, K: Kind>(
     }
     for gap in least.to_array() {
         *least_gap = least_gap.min(gap);
+    }
+}
+
+/// The arm of a contact after a substep. Where nothing turns it keeps its bits, whoever shares the batch.
+#[inline(always)]
+fn turned<F: Lanes>(offset: V8<F>, carry: V8<F>) -> V8<F> {
+    let (turned, zero) = (offset + carry, F::zero());
+    V8 {
+        x: carry.x.abs().gt(zero).select(turned.x, offset.x),
+        y: carry.y.abs().gt(zero).select(turned.y, offset.y),
+        z: carry.z.abs().gt(zero).select(turned.z, offset.z),
     }
 }
 
