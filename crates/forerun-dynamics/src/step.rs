@@ -68,7 +68,7 @@ impl StepReport {
 /// The states of the members one frame later, in the members' order.
 ///
 /// Stage 1, collisions, is what made the group: swept bounds, pairs, contacts. The other five follow for each batch of islands. The states
-/// lie in the scratch until it is used again.
+/// lie in the scratch until it is used again. In an environment that [`Environment::check`] refuses nothing moves.
 pub fn advance<'s>(
     group: &Group,
     environment: &Environment,
@@ -109,6 +109,11 @@ pub(crate) fn advance_islands(
     Known { touches, still }: Known,
     scratch: &mut StepScratch,
 ) -> StepReport {
+    if environment.check().is_err() {
+        scratch.next.clear();
+        scratch.next.extend(group.members.iter().map(|member| member.state));
+        return StepReport::default();
+    }
     let StepScratch { plan, slices, next, slice_counts, chosen, .. } = scratch;
     plan.make(group, environment, still);
     let mut ledger = touches.is_some().then(Ledger::default);

@@ -79,7 +79,8 @@ impl Stillness {
         self.rested.clear();
         self.rested.extend(resting);
         let stays = |((before, after), resting): ((&BodyState, &BodyState), &bool)| {
-            *resting || before.same_bits(after)
+            // What is stopped again and again because it is not finite is reported again and again.
+            *resting || before.same_bits(after) && after.is_finite()
         };
         self.everybody = before.iter().zip(after).zip(resting).all(stays);
     }

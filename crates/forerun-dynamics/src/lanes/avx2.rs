@@ -74,12 +74,12 @@ unsafe impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
-        assert_below(index, rows.len());
+    unsafe fn gather_raw(rows: *const Row, length: usize, index: &[u32; LANES]) -> [Self; LANES] {
+        assert_below(index, length);
         let mut r = [unsafe { _mm256_setzero_ps() }; LANES];
         for lane in 0..LANES {
             // SAFETY: the index was found to be below the length.
-            r[lane] = unsafe { _mm256_load_ps(rows.get_unchecked(index[lane] as usize).as_ptr().cast()) };
+            r[lane] = unsafe { _mm256_load_ps(rows.add(index[lane] as usize).cast()) };
         }
         let [a, b, c, d, e, f, g, h] = transpose(r);
         [Avx2(a), Avx2(b), Avx2(c), Avx2(d), Avx2(e), Avx2(f), Avx2(g), Avx2(h)]

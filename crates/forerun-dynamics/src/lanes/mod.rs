@@ -60,15 +60,36 @@ pub(crate) unsafe trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
 
     /// Rows of eight bodies, turned so that each number of the record is one value.
-    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES];
+    ///
+    /// # Safety
+    /// `rows` are so many rows in memory; while the eight of the index are read nobody writes them.
+    #[allow(
+        unsafe_code,
+        reason = "rows that nobody writes and rows that others write elsewhere are read alike"
+    )]
+    unsafe fn gather_raw(rows: *const Row, length: usize, index: &[u32; LANES]) -> [Self; LANES];
 
-    /// Writes the rows of eight bodies. Lanes that share an index must hold equal values.
+    /// As [`Lanes::gather_raw`], of rows to which only this thread writes, or others at other places.
+    #[inline(always)]
+    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
+        // SAFETY: a cell is laid out as what is in it, and is not shared between threads but by `Shared::cells`, whose callers keep out of each other's way.
+        #[allow(unsafe_code, reason = "see above")]
+        unsafe {
+            Self::gather_raw(rows.as_ptr().cast(), rows.len(), index)
+        }
+    }
+
+    /// Writes the rows of eight bodies. Of lanes that share an index the last is kept: only a row that nobody reads may be shared.
     fn scatter(rows: &[Cell<Row>], index: &[u32; LANES], values: [Self; LANES]);
 
-    /// As [`Lanes::gather_cells`], of rows that nobody writes.
+    /// As [`Lanes::gather_raw`], of rows that nobody writes.
     #[inline(always)]
     fn gather(rows: &[Row], index: &[u32; LANES]) -> [Self; LANES] {
-        Self::gather_cells(still(rows), index)
+        // SAFETY: nobody writes what is shared.
+        #[allow(unsafe_code, reason = "see above")]
+        unsafe {
+            Self::gather_raw(rows.as_ptr(), rows.len(), index)
+        }
     }
 
     #[inline(always)]
@@ -217,16 +238,6 @@ pub(crate) fn cells(rows: &mut [Row]) -> &[Cell<Row>] {
     Cell::from_mut(rows).as_slice_of_cells()
 }
 
-/// Rows that nobody writes for now.
-#[inline(always)]
-fn still(rows: &[Row]) -> &[Cell<Row>] {
-    // SAFETY: a cell is laid out as what is in it. While the shared reference lives nobody writes the rows, and no kernel writes what it only gathers.
-    #[allow(unsafe_code, reason = "kernels read rows that stay as they are and rows that others write alike")]
-    unsafe {
-        std::slice::from_raw_parts(rows.as_ptr().cast(), rows.len())
-    }
-}
-
 impl<F: Lanes> Twist8<F> {
     /// Of the rows of eight bodies.
     #[inline(always)]
@@ -235,7 +246,7 @@ impl<F: Lanes> Twist8<F> {
     }
 }
 
-/// Writes the parts back. Lanes that share an index must hold equal values.
+/// Writes the parts back. Of lanes that share an index the last is kept: only a row that nobody reads may be shared.
 #[inline(always)]
 pub(crate) fn scatter_twist<F: Lanes>(rows: &[Cell<Row>], index: &[u32; LANES], twist: &Twist8<F>) {
     let (l, a) = (twist.linear, twist.angular);

@@ -73,8 +73,12 @@ unsafe impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
-        let rows = index.map(|i| rows[i as usize].get().0);
+    unsafe fn gather_raw(rows: *const Row, length: usize, index: &[u32; LANES]) -> [Self; LANES] {
+        let rows = index.map(|i| {
+            assert!((i as usize) < length, "row {i} of {length}");
+            // SAFETY: the index is below the length.
+            unsafe { (*rows.add(i as usize)).0 }
+        });
         std::array::from_fn(|k| Portable(rows.map(|row| row[k])))
     }
 

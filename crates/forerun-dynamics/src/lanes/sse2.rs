@@ -76,13 +76,16 @@ unsafe impl Lanes for Sse2 {
     }
 
     #[inline(always)]
-    fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
+    unsafe fn gather_raw(rows: *const Row, length: usize, index: &[u32; LANES]) -> [Self; LANES] {
         let mut columns = [Self::zero(); LANES];
         for half in 0..2 {
             let mut low = [unsafe { _mm_setzero_ps() }; 4];
             let mut high = low;
             for lane in 0..4 {
-                let row: *const f32 = rows[index[4 * half + lane] as usize].as_ptr().cast();
+                let at = index[4 * half + lane] as usize;
+                assert!(at < length, "row {at} of {length}");
+                // SAFETY: the index is below the length.
+                let row: *const f32 = unsafe { rows.add(at).cast() };
                 (low[lane], high[lane]) = unsafe { (_mm_load_ps(row), _mm_load_ps(row.add(4))) };
             }
             let (low, high) = (transpose(low), transpose(high));

@@ -272,8 +272,8 @@ fn edge_manifold(a: &LaneBox, b: &LaneBox, edge: usize) -> Manifold {
     let cosine = a.axes[i].dot(b.axes[j]);
     let (ra, rb) = (r.dot(a.axes[i]), r.dot(b.axes[j]));
     let inverse = 1.0 / (1.0 - cosine * cosine);
-    let s = ((ra - cosine * rb) * inverse).clamp(-a.half[i], a.half[i]);
-    let t = ((cosine * ra - rb) * inverse).clamp(-b.half[j], b.half[j]);
+    let s = ((ra - cosine * rb) * inverse).max(-a.half[i]).min(a.half[i]);
+    let t = ((cosine * ra - rb) * inverse).max(-b.half[j]).min(b.half[j]);
     let (pa, pb) = (on_a + a.axes[i] * s, on_b + b.axes[j] * t);
     let point = ContactPoint { position: (pa + pb) * 0.5, normal, separation: (pb - pa).dot(normal) };
     Manifold { normal, points: [point; 4], count: 1 }

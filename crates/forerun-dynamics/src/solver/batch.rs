@@ -118,6 +118,7 @@ impl<'a> Batch<'a> {
     pub(crate) fn start(&mut self, environment: &Environment, found: &'a [Contact]) {
         self.environment = *environment;
         self.found = found;
+        self.least_gap = f32::MAX;
         self.dynamic.clear();
         self.dynamic.extend(self.members.iter().map(|m| m.body.is_dynamic()));
         self.bounces = self.members.iter().any(|m| m.body.material.restitution > 0.0);

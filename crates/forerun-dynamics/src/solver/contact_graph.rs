@@ -122,7 +122,8 @@ impl ContactGraph {
         &self.deepest
     }
 
-    /// The level of each body: 0 for the ground.
+    /// The level of each body: 0 for the ground. What nothing supports has one more than the highest of the batch, not of its island: to be compared,
+    /// never to be reckoned with.
     pub(crate) fn levels(&self) -> &[u32] {
         &self.level
     }

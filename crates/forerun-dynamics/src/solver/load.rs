@@ -56,7 +56,7 @@ impl Compass {
     }
 }
 
-/// The four points of a manifold, place by place; those that are not meant are far apart.
+/// The four points of a manifold, place by place; those that are not meant do not touch.
 struct Points {
     position: [[f32; 4]; 3],
     normal: [[f32; 4]; 3],
@@ -363,5 +363,19 @@ fn shrink(speed: f32) -> f32 {
         speed + DEAD_SPEED
     } else {
         0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_that_are_not_meant_carry_nothing() {
+        let point = ContactPoint { position: Vec3::X, normal: Vec3::Y, separation: 0.0 };
+        let manifold = Manifold { normal: Vec3::Y, points: [point; 4], count: 1 };
+        let points = Points::of(&manifold);
+        let rise = points.normal_along(Vec3::Y);
+        assert_eq!(points.weight(&rise, 0.01), [1.0, 0.0, 0.0, 0.0]);
     }
 }

@@ -21,7 +21,7 @@ use super::shared::{Least, Shared};
 use super::shock::{propagate_classic, propagate_shock};
 use super::standing::StandingPass;
 use super::sweep::{relax, sweep};
-use super::team::Team;
+use super::team::Lead;
 use super::warm_start::{apply_impulses, remove_momentum};
 use crate::StepSettings;
 use crate::lanes::{Portable, Row, cells};
@@ -55,7 +55,7 @@ impl Rows {
         resolve_collisions(&self.uneven.blocks, &self.uneven.details, moving);
     }
 
-    pub(crate) fn apply_impulses(&mut self, velocities: &mut [Row], team: &Team) {
+    pub(crate) fn apply_impulses(&mut self, velocities: &mut [Row], team: &mut Lead) {
         self.flat.pass(team, velocities, |blocks, _, rows| apply_impulses(blocks, rows));
         self.uneven.pass(team, velocities, |blocks, _, rows| apply_impulses(blocks, rows));
     }
@@ -72,7 +72,7 @@ impl Rows {
         guard.scale_impulses(islands, (&mut uneven.blocks, &mut uneven.details), what);
     }
 
-    pub(crate) fn sweep(&mut self, velocities: &mut [Row], team: &Team) {
+    pub(crate) fn sweep(&mut self, velocities: &mut [Row], team: &mut Lead) {
         self.flat.pass(team, velocities, |blocks, _, rows| sweep(blocks, rows));
         self.uneven.pass(team, velocities, |blocks, _, rows| sweep(blocks, rows));
     }
@@ -106,7 +106,7 @@ impl Rows {
     }
 
     /// Returns the least separation that was met. Metres.
-    pub(crate) fn relax(&mut self, velocities: &mut [Row], ahead: &Ahead, team: &Team) -> f32 {
+    pub(crate) fn relax(&mut self, velocities: &mut [Row], ahead: &Ahead, team: &mut Lead) -> f32 {
         let least = Least::default();
         self.flat.pass(team, velocities, |blocks, details, rows| {
             least.note(|gap| relax(blocks, details, rows, ahead, gap));
@@ -127,7 +127,7 @@ impl Rows {
         &mut self,
         displacements: &mut [Row],
         settings: &StepSettings,
-        team: &Team,
+        team: &mut Lead,
     ) {
         self.flat.pass(team, displacements, |blocks, details, rows| {
             propagate_shock(blocks, details, rows, settings);
@@ -184,7 +184,7 @@ impl<K: Kind> Arranged<K> {
     #[allow(unsafe_code, reason = "hands out parts of the blocks to several threads")]
     fn pass(
         &mut self,
-        team: &Team,
+        team: &mut Lead,
         rows: &mut [Row],
         kernel: impl Fn(&mut [Block<Portable, K>], &[Detail<Portable>], &[Cell<Row>]) + Sync,
     ) {

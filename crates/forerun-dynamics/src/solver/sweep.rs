@@ -263,8 +263,8 @@ pub(crate) fn friction<F: Lanes>(rows: &Friction<F>, slip: &[F; 3], sum: F, old:
     let scale = sticks.lt(length).select(slides / length.max(F::splat(1e-20)), F::one());
     // Where nothing presses nothing rubs, also where the squares above are too small for a number: a contact that does not collide must not
     // notice that another one in its block does.
-    let scale = sum.gt(F::zero()).select(scale, F::zero());
+    let presses = sum.gt(F::zero());
     let limit = slides * rows.radius;
     let spin = (old[2] - rows.twist_inverse_k * slip[2]).max(-limit).min(limit);
-    [x * scale, y * scale, spin]
+    [presses.select(x * scale, F::zero()), presses.select(y * scale, F::zero()), spin]
 }

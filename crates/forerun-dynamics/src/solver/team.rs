@@ -1,10 +1,11 @@
 //! Team: several threads in one large island, with the bits of one.
 //!
-//! The lead calls one pass after the other; in each, threads do the blocks of [`Shares`]. Nobody is waited for who has not come: a thread that has
+//! The lead calls one pass after the other; in each, threads do the blocks of [`Shares`]. No pass waits for who has not come: a thread that has
 //! nothing to do in its own share goes on with one that nobody works at, and the lead alone does them all. So teams on one pool, each of which hopes
-//! for the threads of the other, cannot block each other.
+//! for the threads of the other, cannot block each other. (The end of a team waits until the pool has taken up every invitation.)
 
 use std::cell::UnsafeCell;
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -50,18 +51,35 @@ pub(crate) struct Team {
 #[allow(unsafe_code, reason = "threads are handed work that lives on the stack of the lead")]
 unsafe impl Sync for Team {}
 
+/// Who calls the passes of a team: one thread, one pass at a time.
+pub(crate) struct Lead<'a> {
+    team: &'a Team,
+    /// Stays in its thread.
+    here: PhantomData<*const ()>,
+}
+
+impl Lead<'_> {
+    /// One pass: `work` on all blocks of the shares (as many as the team has threads), those that move a common body in their order. What was written
+    /// before the pass is seen in it, and what is written in it after it.
+    pub(crate) fn run(&mut self, shares: &Shares, work: Work) {
+        self.team.run(shares, work);
+    }
+}
+
 impl Team {
     /// Has `lead` call passes. Threads of the current pool help as they come, up to `size` with the lead.
-    pub(crate) fn gather<R>(size: usize, lead: impl FnOnce(&Team) -> R) -> R {
+    pub(crate) fn gather<R>(size: usize, lead: impl FnOnce(&mut Lead) -> R) -> R {
+        // One thread keeps no account of itself: it allocates nothing.
+        let counted = if size < 2 { 0 } else { size };
         let team = Team {
-            progress: (0..size).map(|_| Progress::default()).collect(),
+            progress: (0..counted).map(|_| Progress::default()).collect(),
             epoch: AtomicU32::new(0),
             pass: UnsafeCell::new(None),
             inside: AtomicU32::new(0),
             over: AtomicBool::new(false),
         };
         if size < 2 {
-            return lead(&team);
+            return lead(&mut Lead { team: &team, here: PhantomData });
         }
         rayon::in_place_scope(|scope| {
             let team = &team;
@@ -70,7 +88,7 @@ impl Team {
             }
             // Also when `lead` panics: the others must go home.
             let _over = Over(&team.over);
-            lead(team)
+            lead(&mut Lead { team, here: PhantomData })
         })
     }
 
@@ -79,16 +97,16 @@ impl Team {
         self.progress.len()
     }
 
-    /// One pass: `work` on all blocks of the shares (as many as the team has threads), those that move a common body in their order. What was written
-    /// before the pass is seen in it, and what is written in it after it. To be called by the lead alone.
+    /// See [`Lead::run`], the one who calls it: there is one lead, and it cannot call from within a pass.
     #[allow(unsafe_code, reason = "threads are handed work that lives on the stack of the lead")]
-    pub(crate) fn run(&self, shares: &Shares, work: Work) {
+    fn run(&self, shares: &Shares, work: Work) {
         assert_eq!(shares.len(), self.size(), "one share a thread");
         for progress in &self.progress {
             progress.done.store(0, Ordering::Relaxed);
         }
         // SAFETY: only the lifetime is left out. The pointer is followed by threads that are inside, and this function does not return before the last
-        // of them has left, nor unwinds: the lead itself is the one who would panic, and `Closing` waits then as well.
+        // of them has left, nor unwinds before: `Closing` waits as well. (A thread that panics lets go of its share, which another goes on with, some of
+        // it twice; the panic leaves the scope, and what was written is thrown away.)
         let work: *const (dyn Fn(Range<usize>) + Sync) =
             unsafe { std::mem::transmute::<Work, &'static (dyn Fn(Range<usize>) + Sync)>(work) };
         // SAFETY: the epoch is even and nobody is inside.
@@ -291,7 +309,7 @@ mod tests {
             let (blocks, runs) = island(seed, 400, 30);
             let shares = shares(4, &blocks, &runs, 400);
             let notes: Vec<Mutex<Vec<usize>>> = (0..400).map(|_| Mutex::default()).collect();
-            let pass = |team: &Team, pass: usize| {
+            let pass = |team: &mut Lead, pass: usize| {
                 team.run(&shares, &|range| {
                     for block in range {
                         for &body in &blocks[block] {
