@@ -3,6 +3,7 @@
 //! A frame beyond the horizon is guessed to be like the last one, as if the last step had been done again; where a body moved, the
 //! guess is out of date. So a new frame is re-simulated like any other, and what is at rest costs nothing.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use forerun_dynamics::step::{Group, advance, advance_touching};
@@ -117,14 +118,7 @@ impl Timeline {
         self.step_scratch = scratch;
         let outdated = (stale.everyone || stale.all_touched).then(|| stored.touches());
         let told = touches.map(|touches| Told::new(&entries, &group, &touches, table.touches(), outdated));
-        // Forks and later edits share the effects: to touch them is to copy.
-        let mut effects = match self.effects.contains_key(&arrival) {
-            true => Arc::make_mut(&mut self.effects)
-                .remove(&arrival)
-                .map(Arc::unwrap_or_clone)
-                .unwrap_or_default(),
-            false => FrameEffects::default(),
-        };
+        let mut effects = taken(&mut self.effects, arrival);
         self.stats.ignored -= ignored(&effects);
         let mut entries = arrived.apply_commands(entries, stale, &mut self.areas, &mut effects);
         self.stats.ignored += ignored(&effects);
@@ -215,4 +209,12 @@ fn entries(group: &Affected, next: &[BodyState], out_of_date: &[BodyId]) -> Vec<
 fn nearly(stored: Option<&BodyState>, new: Option<&BodyState>, tolerance: f32) -> bool {
     let (Some(a), Some(b)) = (stored, new) else { return stored.is_none() && new.is_none() };
     (a.position - b.position).length() < tolerance && (a.velocity - b.velocity).length() < tolerance
+}
+
+/// The effects of the commands of a frame, taken out. Forks and later edits share them: to touch them is to copy.
+fn taken(effects: &mut Arc<BTreeMap<Frame, Arc<FrameEffects>>>, frame: Frame) -> FrameEffects {
+    if !effects.contains_key(&frame) {
+        return FrameEffects::default();
+    }
+    Arc::make_mut(effects).remove(&frame).map(Arc::unwrap_or_clone).unwrap_or_default()
 }

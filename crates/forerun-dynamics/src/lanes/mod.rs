@@ -1,6 +1,6 @@
 //! Lanes: eight numbers at a time, with the same bits on every processor.
 //!
-//! Kernels are written once over [`Lanes`] and compiled for plain arrays and, on x86-64, for SSE2, AVX2 and AVX-512; `dispatched!` chooses at run
+//! Kernels are written once over `Lanes` and compiled for plain arrays and, on x86-64, for SSE2, AVX2 and AVX-512; `dispatched!` chooses at run
 //! time, see [`InstructionSet`]. Only + - * / sqrt and comparisons, no fused multiply-add, so that all forms give equal bits.
 #![allow(
     clippy::needless_range_loop,

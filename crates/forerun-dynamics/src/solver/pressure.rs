@@ -173,7 +173,7 @@ mod tests {
         assert!((moment(|_, _| 1.0) - 10.0).abs() < 1e-5);
         assert!((moment(|f, q| f.x[q]) - 3.0).abs() < 1e-5);
         assert!((moment(|f, q| f.z[q]) + 2.0).abs() < 1e-5);
-        assert!(shares.iter().all(|s| s.still == s.total));
+        assert!(shares.iter().all(|s| s.still.map(f32::to_bits) == s.total.map(f32::to_bits)));
         assert_eq!(shares[1].total.map(|load| load > 0.0), [false, true, false, false]);
     }
 
@@ -182,7 +182,7 @@ mod tests {
         let mut load = Carried::default();
         load.add(10.0, 1.5, 0.0);
         let shares = fitted(&[SQUARE], &load);
-        assert_eq!(shares[0].weight, [0.0, 1.0, 1.0, 0.0]);
+        assert_eq!(shares[0].weight.map(|w| w > 0.0), [false, true, true, false]);
         let expected = [0.0, 5.0, 5.0, 0.0];
         assert!(shares[0].total.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{shares:?}");
     }

@@ -15,8 +15,8 @@ use crate::{BodyId, Pose};
 
 /// A scene under a driver, ready to show one picture after the other.
 pub(super) enum Show {
-    Decoupled(DecoupledShow),
-    Coupled(CoupledShow),
+    Decoupled(Box<DecoupledShow>),
+    Coupled(Box<CoupledShow>),
 }
 
 impl Show {
@@ -30,18 +30,18 @@ impl Show {
         let script = VecDeque::from(changes_of(scene)?);
         match settings.driver {
             DriverKind::Decoupled => {
-                DecoupledShow::new(scene, script, (settings, threads)).map(Show::Decoupled)
+                DecoupledShow::new(scene, script, (settings, threads)).map(Box::new).map(Show::Decoupled)
             }
             DriverKind::Coupled => {
                 let driver = Coupled::new(world_of(scene)?, clock.clone(), threads, StepLimits::default())?
                     .with_slow_down(settings.slow_down);
-                Ok(Show::Coupled(CoupledShow {
+                Ok(Show::Coupled(Box::new(CoupledShow {
                     driver,
                     script,
                     scene: scene.name.clone(),
                     frame_seconds: f64::from(scene.frame_seconds),
                     quarantined: 0,
-                }))
+                })))
             }
         }
     }
@@ -75,7 +75,8 @@ impl Show {
 
     /// Ends the show, and completes the record of it.
     pub(super) fn finish(self) -> Result<(), PlaybackError> {
-        let Show::Decoupled(DecoupledShow { driver, recorder, .. }) = self else { return Ok(()) };
+        let Show::Decoupled(show) = self else { return Ok(()) };
+        let DecoupledShow { driver, recorder, .. } = *show;
         drop(driver);
         Ok(recorder.map_or(Ok(()), |recorder| recorder.finish())?)
     }
