@@ -183,8 +183,9 @@ fn lost(world: &World) -> usize {
             _ => false,
         }
     };
-    let box_middles = fixed().filter(|(body, _)| matches!(body.shape, Shape::Cuboid(_)));
-    let lowest = box_middles.map(|(_, state)| state.position.y).fold(f32::INFINITY, f32::min);
+    let boxes = fixed().filter(|(body, _)| matches!(body.shape, Shape::Cuboid(_)));
+    let bottoms = boxes.map(|(body, state)| body.shape.aabb(&body.own_pose(state)).min.y);
+    let lowest = bottoms.fold(f32::INFINITY, f32::min);
     let is_lost = |position: Vec3| {
         fixed().any(|fixed| is_inside(fixed, position)) || (lowest.is_finite() && position.y < lowest)
     };
@@ -234,6 +235,8 @@ mod tests {
         assert_eq!(own("dominoes", &meter.start, &end), Own::Fallen { count: 1, of: 4 });
         end.states_mut()[3].position.y = -0.1;
         assert_eq!(own("rain", &meter.start, &end), Own::Lost { count: 1 });
+        let pit = Meter::new(&Scene::open("rain:10").unwrap()).unwrap();
+        assert_eq!(own("rain", &pit.start, &pit.start), Own::Lost { count: 0 });
     }
 
     /// The ground is a box of 2 m whose top is at 0.
