@@ -1,5 +1,8 @@
 //! Lanes as plain arrays: every target has these.
-#![allow(unsafe_code, reason = "says of its layout what the other rooms rely on")]
+#![allow(
+    unsafe_code,
+    reason = "reads rows by address, as the other forms do, and says of its layout what they rely on"
+)]
 
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
