@@ -8,12 +8,12 @@ use crate::Vec3;
 use crate::shape::Mesh;
 
 mod bake;
+pub(crate) mod eight;
 mod field;
-pub(crate) mod lanes;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
 mod pseudo_normals;
-mod samples;
+pub(crate) mod samples;
 
 pub use field::Field;
 pub use samples::{Sample, Samples};
