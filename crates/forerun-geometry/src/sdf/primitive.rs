@@ -28,10 +28,28 @@ pub(crate) enum Surface<'a> {
     Sheet(Skin<'a>, f32),
 }
 
-impl Surface<'_> {
-    /// Signed distance (metres) and gradient at eight points. Gradients are not quite unit.
+/// What eight points can be looked up in at a time.
+pub(crate) trait LookUp {
+    /// Signed distances (metres) and gradients. Gradients are not quite unit.
+    ///
+    /// Beyond a grid's box this is the distance to a point of the surface, that nearest to the nearest point of the box:
+    /// the true distance or more.
+    fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>);
+
+    /// [`LookUp::look_up`]; may be none where all distances are `limit` (metres) or more.
     #[inline(always)]
-    pub(crate) fn look_up<F: Lanes>(&self, p: V8<F>) -> (F, V8<F>) {
+    fn look_up_near<F: Lanes>(&self, points: V8<F>, limit: f32) -> Option<(F, V8<F>)> {
+        let (distances, gradients) = self.look_up(points);
+        if distances.lt(F::splat(limit)).any() { Some((distances, gradients)) } else { None }
+    }
+
+    /// Lower bounds of the signed distances, for culling; exact (but for a grid) inside a grid's box.
+    fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F;
+}
+
+impl LookUp for Surface<'_> {
+    #[inline(always)]
+    fn look_up<F: Lanes>(&self, p: V8<F>) -> (F, V8<F>) {
         match self {
             Surface::HalfSpace => (p.y, splat(Vec3::Y)),
             Surface::Sphere(radius) => round(p, *radius),
@@ -51,16 +69,17 @@ impl Surface<'_> {
         }
     }
 
-    /// Lower bounds of the signed distance at eight points, for culling.
     #[inline(always)]
-    pub(crate) fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
+    fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
         match self {
             Surface::Field(field) => field.lower_bound(p),
             Surface::Sheet(skin, depth_limit) => F::from_array(sheet_bound(&p.form(), skin, *depth_limit)),
             _ => self.look_up(p).0,
         }
     }
+}
 
+impl Surface<'_> {
     /// Signed distance and gradient at one point; in a field from the triangles of its mesh, exact at any distance.
     /// `guess` is for the next point close by.
     pub(crate) fn exact(&self, p: Vec3, skin: Option<&Skin<'_>>, guess: &mut Option<Nearest>) -> (f32, Vec3) {

@@ -45,14 +45,16 @@ pub(super) struct Direction<'a> {
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
     pub(super) origin: Vec3,
-    /// Where the field is in the world.
-    pub(super) field_pose: Pose,
+    /// Origin of the field's frame in the world. Metres.
+    pub(super) field_position: Vec3,
     /// Rotation of the field in the world.
     pub(super) field_axes: Mat3,
     /// A point x of the field's frame is about to move by `drift + spin × x`, with some to spare. Metres.
     pub(super) drift: Vec3,
     /// See `drift`. Radians.
     pub(super) spin: Vec3,
+    /// Length of `spin`. Radians.
+    pub(super) turn: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
     pub(super) inset: f32,
     /// Points closer than this count, or that will be closer at the end of the step. Metres.
@@ -108,17 +110,30 @@ pub(super) fn between<'a>(
             memory.points.fill(shape, &region, gradient);
         }
     }
-    [
-        direction([first, second], Way::There, margin, memory),
-        direction([second, first], Way::Back, margin, memory),
-    ]
+    let axes = [first.pose.axes(), second.pose.axes()];
+    let there = direction([first, second], axes, (Way::There, margin), memory);
+    if let (Some(there), Shape::Mesh(first), Shape::Mesh(second)) = (&there, first.shape, second.shape)
+        && is_beyond(there.origin, first, second, margin)
+    {
+        return [None, None];
+    }
+    [there, direction([second, first], [axes[1], axes[0]], (Way::Back, margin), memory)]
 }
 
-/// Points of `sampled` in the field of `field`; none if `sampled` has no points.
+/// Whether the ball around a mesh that is at `place` in the frame of another is farther than `margin` from the other's box. Metres.
+fn is_beyond(place: Vec3, ball: &Mesh, other: &Mesh, margin: f32) -> bool {
+    let bounds = other.bounds();
+    let reach = ball.collider().radius + margin;
+    let offset = (bounds.min - place).max(place - bounds.max).max(Vec3::ZERO);
+    // A little more, for what rounding may lose.
+    offset.length_squared() > reach * reach * 1.0001
+}
+
+/// Points of `sampled` in the field of `field`, whose axes in the world are given; none if `sampled` has no points.
 fn direction<'a>(
     [sampled, field]: [&Placed<'a>; 2],
-    way: Way,
-    margin: f32,
+    [sampled_axes, field_axes]: [Mat3; 2],
+    (way, margin): (Way, f32),
     memory: &'a Primitives,
 ) -> Option<Direction<'a>> {
     let points = match (sampled.shape, field.shape) {
@@ -129,24 +144,24 @@ fn direction<'a>(
         Shape::Mesh(mesh) => (mesh_surface(mesh, 2.0 * sampled.shape.half_thickness()), Some(Skin::of(mesh))),
         shape => (primitive_surface(shape, &memory.planes)?, None),
     };
-    let to_field = field.pose.inverse() * sampled.pose;
+    let into_field = field_axes.transpose();
     // Relative motion of points of the sampled shape, seen from the field, about the origin of the field's frame.
     let (s, f) = (&sampled.motion, &field.motion);
-    let spin = s.angular - f.angular;
     let at = field.pose.position;
     let drift = s.linear + s.angular.cross(at - s.about) - f.linear - f.angular.cross(at - f.about);
-    let into_field = |v: Vec3| field.pose.inverse_transform_vector(v) * MOTION_AHEAD;
+    let spin = into_field * (s.angular - f.angular) * MOTION_AHEAD;
     Some(Direction {
         way,
         points,
         surface,
         skin,
-        axes: to_field.axes(),
-        origin: to_field.position,
-        field_pose: field.pose,
-        field_axes: field.pose.axes(),
-        drift: into_field(drift),
-        spin: into_field(spin),
+        axes: into_field * sampled_axes,
+        origin: into_field * (sampled.pose.position - at),
+        field_position: at,
+        field_axes,
+        drift: into_field * drift * MOTION_AHEAD,
+        spin,
+        turn: spin.length(),
         inset: INSET_PART * sampled.shape.half_thickness(),
         near: NEAR.min(margin),
         margin,

@@ -7,7 +7,7 @@ use super::directions::{Direction, Points};
 use super::points::RoundPoint;
 use crate::Vec3;
 use crate::sdf::eight::{normalized, of_vectors, splat, transformed};
-use crate::sdf::primitive::Surface;
+use crate::sdf::primitive::{LookUp, Surface};
 use crate::sdf::samples::Spheres;
 use crate::sdf::{Sample, Samples};
 
@@ -44,9 +44,11 @@ struct Answers<F> {
 
 /// Appends the points of the direction that are near the surface, or will be at the end of the step.
 pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
-    match direction.points {
-        Points::Sharp(samples) => find_sharp(direction, samples, candidates),
-        Points::Round(balls) => {
+    match (direction.points, &direction.surface) {
+        // Fields have a form of their own: they are what most is looked up in.
+        (Points::Sharp(samples), Surface::Field(field)) => find_sharp(direction, *field, samples, candidates),
+        (Points::Sharp(samples), surface) => find_sharp(direction, surface, samples, candidates),
+        (Points::Round(balls), _) => {
             for chunk in balls.chunks(LANES) {
                 find_round(direction, chunk, candidates);
             }
@@ -55,23 +57,35 @@ pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
 }
 
 dispatched! {
-    fn find_sharp(direction: &Direction, samples: &Samples, candidates: &mut Candidates) => find_sharp_lanes
+    fn find_sharp<S: LookUp>(
+        direction: &Direction,
+        surface: &S,
+        samples: &Samples,
+        candidates: &mut Candidates,
+    ) => find_sharp_lanes
 }
 
 #[inline(always)]
-fn find_sharp_lanes<F: Lanes>(direction: &Direction, samples: &Samples, candidates: &mut Candidates) {
+fn find_sharp_lanes<F: Lanes, S: LookUp>(
+    direction: &Direction,
+    surface: &S,
+    samples: &Samples,
+    candidates: &mut Candidates,
+) {
     let Candidates { blocks, leaves, nodes } = candidates;
-    cull::<F>(direction, samples, nodes, leaves);
+    cull::<F, S>(direction, surface, samples, (nodes, leaves));
     for &leaf in &*leaves {
         let (leaf, meant) = samples.leaf(leaf as usize);
-        let eight = Eight::<F> {
-            points: transformed(leaf.points.form(), &direction.axes, direction.origin),
-            outwards: transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO),
-            facing_max: F::from_array(leaf.facing_max.to_array()),
-        };
-        let mut there = direction.meet(&eight, 0.0, meant);
+        let points = transformed::<F>(leaf.points.form(), &direction.axes, direction.origin);
+        let Some(answer) = surface.look_up_near(points, direction.margin) else { continue };
+        let outwards = transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO);
+        let eight = Eight { points, outwards, facing_max: F::from_array(leaf.facing_max.to_array()) };
+        let mut there = direction.judge(&eight, answer, V8::zero(), meant);
         if there.doubtful != 0 && direction.inset > 0.0 {
-            let mut inside = direction.meet(&eight, direction.inset, there.doubtful);
+            // Further inside their own surface the face that the points have come through is the nearest one even for
+            // the corners of a box that stands exactly on another of the same size.
+            let back = outwards * F::splat(direction.inset);
+            let mut inside = direction.judge(&eight, surface.look_up(points - back), back, there.doubtful);
             // Better than an answer that is good enough is only one without doubt.
             inside.found &= !inside.doubtful | !there.found;
             there.found &= !inside.found;
@@ -81,19 +95,25 @@ fn find_sharp_lanes<F: Lanes>(direction: &Direction, samples: &Samples, candidat
     }
 }
 
-/// Fills `leaves` with the leaves that may hold points that count.
+/// Fills the second list with the leaves that may hold points that count, by way of the first.
 #[inline(always)]
-fn cull<F: Lanes>(direction: &Direction, samples: &Samples, nodes: &mut Vec<u32>, leaves: &mut Vec<u32>) {
+fn cull<F: Lanes, S: LookUp>(
+    direction: &Direction,
+    surface: &S,
+    samples: &Samples,
+    (nodes, leaves): (&mut Vec<u32>, &mut Vec<u32>),
+) {
     nodes.clear();
     if samples.node_spheres().is_empty() {
         nodes.extend(0..samples.leaf_spheres().len() as u32);
     }
     for (block, spheres) in samples.node_spheres().iter().enumerate() {
-        push_bits(block, direction.near::<F>(spheres), nodes);
+        push_bits(block, direction.near::<F, S>(surface, spheres), nodes);
     }
     leaves.clear();
     for &node in &*nodes {
-        push_bits(node as usize, direction.near::<F>(&samples.leaf_spheres()[node as usize]), leaves);
+        let spheres = &samples.leaf_spheres()[node as usize];
+        push_bits(node as usize, direction.near::<F, S>(surface, spheres), leaves);
     }
 }
 
@@ -107,28 +127,27 @@ fn push_bits(block: usize, mut bits: u32, list: &mut Vec<u32>) {
 }
 
 impl Direction<'_> {
-    /// What the field says to some of eight points, asked `inset` metres further inside their own surface.
-    ///
-    /// There the face that the points have come through is the nearest one even for the corners of a box that stands
-    /// exactly on another of the same size. The answer is carried back to the points along the normal found.
+    /// What is to be made of the answers of the field to some of eight points, given `back` (metres) from them. The answers are carried
+    /// to the points along the normals found.
     #[inline(always)]
-    fn meet<F: Lanes>(&self, eight: &Eight<F>, inset: f32, asked: u32) -> Answers<F> {
-        let back = eight.outwards * F::splat(inset);
-        let (distance, gradient) = self.surface.look_up(eight.points - back);
+    fn judge<F: Lanes>(
+        &self,
+        eight: &Eight<F>,
+        (distance, gradient): (F, V8<F>),
+        back: V8<F>,
+        asked: u32,
+    ) -> Answers<F> {
         let normal = normalized(gradient);
         let distance = distance + normal.dot(back);
-        let near = asked & distance.lt(F::splat(self.margin)).bits();
-        if near == 0 {
-            return Answers { distance, normal, found: 0, doubtful: 0 };
-        }
         let closing = normal.dot(self.motion_at(eight.points)).min(F::zero());
         let facing = normal.dot(eight.outwards);
+        let near = distance.lt(F::splat(self.margin));
         let found = facing.lt(eight.facing_max)
             & (distance + closing).lt(F::splat(self.near))
             & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
         let well = facing.lt(F::splat(FACING_WELL)).bits();
-        let doubtful = near & distance.lt(F::splat(BESIDE)).bits() & !well;
-        Answers { distance, normal, found: near & found.bits(), doubtful }
+        let doubtful = (near & distance.lt(F::splat(BESIDE))).bits() & asked & !well;
+        Answers { distance, normal, found: (near & found).bits() & asked, doubtful }
     }
 
     /// Appends what was found; `rough`: the bits of those whose normal is that of the field at the point itself.
@@ -150,7 +169,7 @@ impl Direction<'_> {
         let in_world = transformed(normal, &self.field_axes, Vec3::ZERO) * F::splat(self.sign());
         blocks.push(Block {
             point: eight.points.form(),
-            position: transformed(midpoint, &self.field_axes, self.field_pose.position).form(),
+            position: transformed(midpoint, &self.field_axes, self.field_position).form(),
             normal: in_world.form(),
             separation: Portable::from_array(answers.distance.to_array()),
             left: Portable::from_array(left.to_array()),
@@ -161,13 +180,13 @@ impl Direction<'_> {
 
     /// The bits of the spheres that may hold points that count.
     #[inline(always)]
-    fn near<F: Lanes>(&self, spheres: &Spheres) -> u32 {
+    fn near<F: Lanes, S: LookUp>(&self, surface: &S, spheres: &Spheres) -> u32 {
         let radii = F::from_array(spheres.radius.to_array());
         let centres = transformed(spheres.centre.form::<F>(), &self.axes, self.origin);
         // No point of a ball moves further than its centre, and what turning about the centre adds.
-        let motion = self.motion_at(centres).length() + radii * F::splat(self.spin.length());
+        let motion = self.motion_at(centres).length() + radii * F::splat(self.turn);
         let near = (motion + F::splat(self.near)).min(F::splat(self.margin));
-        (self.surface.lower_bound(centres) - radii).lt(near).bits()
+        (surface.lower_bound(centres) - radii).lt(near).bits()
     }
 
     #[inline(always)]
@@ -176,9 +195,10 @@ impl Direction<'_> {
     }
 
     /// The normal in the world of a point with the given gradient, and the point half of `way` (metres) against the gradient from it.
+    #[inline]
     pub(super) fn to_world(&self, point: Vec3, gradient: Vec3, way: f32) -> (Vec3, Vec3) {
         let midpoint = point - gradient * (0.5 * way);
-        let position = self.field_axes * midpoint + self.field_pose.position;
+        let position = self.field_axes * midpoint + self.field_position;
         (self.field_axes * gradient * self.sign(), position)
     }
 }
@@ -190,7 +210,7 @@ fn find_round(direction: &Direction, balls: &[RoundPoint], candidates: &mut Cand
         (centres[i], radii[i]) = (ball.centre, ball.radius);
     }
     let spheres = Spheres { centre: of_vectors(&centres), radius: Portable::from_array(radii) };
-    let mut near = direction.near::<Portable>(&spheres);
+    let mut near = direction.near::<Portable, _>(&direction.surface, &spheres);
     let (mut points, mut normals, mut positions) = (centres, [Vec3::ZERO; LANES], [Vec3::ZERO; LANES]);
     let (mut separations, mut found) = ([f32::INFINITY; LANES], false);
     let mut guess = None;
