@@ -14,20 +14,12 @@ use crate::shape::{Mesh, MeshError};
 mod obj;
 mod stl;
 
+pub use crate::shape::TriangleList;
 pub use obj::parse_obj;
 pub use stl::parse_stl;
 
 /// Largest file that is read. Bytes.
 const LARGEST_FILE: u64 = 1 << 30;
-
-/// What a file says, before anything is checked but the numbers themselves.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TriangleList {
-    /// Vertices. In the file's unit of length.
-    pub vertices: Vec<Vec3>,
-    /// Vertex indices of each triangle.
-    pub triangles: Vec<[u32; 3]>,
-}
 
 /// Why bytes are no mesh file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -16,12 +16,14 @@ pub mod mesh_make;
 mod mesh_ray;
 mod mesh_topology;
 mod reach;
+mod triangle_list;
 mod triangle_tree;
 
 pub use compound::Compound;
 pub use hull::{Hull, HullEdge, HullFace, hull_inner_radius};
 pub use mesh::{Mesh, MeshError, MeshRepairs};
 pub(crate) use mesh_ray::FirstHits;
+pub use triangle_list::TriangleList;
 
 /// A shape in a frame of its own. Cloning is cheap: large shapes are shared.
 ///
