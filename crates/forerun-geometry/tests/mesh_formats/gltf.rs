@@ -100,7 +100,7 @@ fn nodes_put_meshes_where_the_gltf_crate_puts_them() {
         }
     }
     let mesh = Mesh::new(list.vertices, list.triangles).unwrap();
-    assert!(mesh.closed && !mesh.repairs.turned);
+    assert!(mesh.has_inside() && !mesh.repairs.turned);
 }
 
 /// The document with one primitive anew, and bytes behind its buffer.
