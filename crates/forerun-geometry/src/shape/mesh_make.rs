@@ -10,6 +10,12 @@ use glam::{DVec2, DVec3};
 use super::{Mesh, ShapeError};
 use crate::Vec3;
 
+mod link;
+mod thread;
+
+pub use link::{Link, link};
+pub use thread::{Bolt, Grip, Nut, Thread, bolt, nut};
+
 /// Most segments or sides that a maker accepts.
 const FINEST: u32 = 1024;
 /// Most parts that an edge of a ball is cut into: 327 680 triangles.
