@@ -286,7 +286,7 @@ mod tests {
             (angle(1.0, 0.2, 0.1).unwrap(), 2 * 14),
         ];
         for (mesh, triangles) in made {
-            assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+            assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             assert_eq!(mesh.triangles.len(), triangles);
         }
     }
