@@ -15,11 +15,13 @@ mod gear;
 mod jack;
 mod knot;
 mod letter;
+mod link;
 mod mug;
 mod outline;
 mod revolution;
 mod surface;
 mod surface_net;
+mod thread;
 
 pub use ball::{Ball, ball};
 pub use bowl::Bowl;
@@ -28,8 +30,10 @@ pub use gear::Gear;
 pub use jack::Jack;
 pub use knot::TorusKnot;
 pub use letter::Letter;
+pub use link::{Link, link};
 pub use mug::Mug;
 pub use revolution::{Torus, ring, torus};
+pub use thread::{Bolt, Grip, Nut, Thread, bolt, nut};
 
 /// Most segments or sides that a maker accepts.
 const FINEST: u32 = 1024;
