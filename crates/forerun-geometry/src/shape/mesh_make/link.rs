@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::count;
-use crate::shape::{Mesh, ShapeError, positive};
+use super::surface::on_circle;
+use super::{FINEST, count};
+use crate::shape::{ShapeError, TriangleList, positive};
 
 /// A link in the plane y = 0, long along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,40 +23,49 @@ pub struct Link {
     pub sides: u32,
 }
 
-/// A link. Its vertices lie on the true tube.
-///
-/// # Errors
-/// When a number is out of the range given with its field.
-pub fn link(link: &Link) -> Result<Mesh, ShapeError> {
-    let Link { radius, straight, tube_radius, bend_parts, sides } = *link;
-    positive("tube_radius", tube_radius)?;
-    if !(radius > tube_radius && radius.is_finite()) {
-        let message = format!("must be above tube_radius ({tube_radius}), is {radius}");
-        return Err(ShapeError::new("radius", message));
-    }
-    if !(straight >= 0.0 && straight.is_finite()) {
-        return Err(ShapeError::new("straight", format!("must be 0 or more, is {straight}")));
-    }
-    count("bend_parts", bend_parts, 2..=512)?;
-    count("sides", sides, 3..=super::FINEST)?;
-    let sections = sections(link);
-    let mut vertices = Vec::with_capacity(sections.len() * sides as usize);
-    for (middle, outward) in &sections {
-        for side in 0..sides {
-            let turn = super::on_circle(side, sides) * f64::from(tube_radius);
-            vertices.push((*middle + *outward * turn.x + DVec3::Y * turn.y).as_vec3());
+impl Link {
+    /// Whether the numbers are in their ranges.
+    ///
+    /// # Errors
+    /// Names the first that is not.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        positive("tube_radius", self.tube_radius)?;
+        if !(self.radius > self.tube_radius && self.radius.is_finite()) {
+            let message = format!("must be above tube_radius ({}), is {}", self.tube_radius, self.radius);
+            return Err(ShapeError::new("radius", message));
         }
-    }
-    let rounds = sections.len() as u32;
-    let at = |section: u32, side: u32| (section % rounds) * sides + side % sides;
-    let mut triangles = Vec::with_capacity(2 * vertices.len());
-    for i in 0..rounds {
-        for j in 0..sides {
-            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-            triangles.extend([[a, b, c], [a, c, d]]);
+        if !(self.straight >= 0.0 && self.straight.is_finite()) {
+            return Err(ShapeError::new("straight", format!("must be 0 or more, is {}", self.straight)));
         }
+        count("bend_parts", self.bend_parts, 2..=512)?;
+        count("sides", self.sides, 3..=FINEST)
     }
-    Ok(Mesh::new(vertices, triangles)?)
+
+    /// Its surface. The vertices lie on the true tube.
+    ///
+    /// # Errors
+    /// As [`Link::check`].
+    pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
+        self.check()?;
+        let sections = sections(self);
+        let mut vertices = Vec::with_capacity(sections.len() * self.sides as usize);
+        for (middle, outward) in &sections {
+            for side in 0..self.sides {
+                let turn = on_circle(side, self.sides) * f64::from(self.tube_radius);
+                vertices.push((*middle + *outward * turn.x + DVec3::Y * turn.y).as_vec3());
+            }
+        }
+        let rounds = sections.len() as u32;
+        let at = |section: u32, side: u32| (section % rounds) * self.sides + side % self.sides;
+        let mut triangles = Vec::with_capacity(2 * vertices.len());
+        for i in 0..rounds {
+            for j in 0..self.sides {
+                let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        Ok(TriangleList { vertices, triangles })
+    }
 }
 
 /// Where the tube is cut, and which way is outwards there: from +x towards +z.
@@ -87,13 +97,15 @@ fn sections(link: &Link) -> Vec<(DVec3, DVec3)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shape::Mesh;
 
     #[test]
     fn links_are_closed_and_have_the_volume_of_their_tube() {
         for straight in [0.0, 0.01, 0.5] {
             let made = Link { radius: 0.2, straight, tube_radius: 0.05, bend_parts: 24, sides: 24 };
-            let mesh = link(&made).unwrap();
-            assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+            let list = made.triangles().unwrap();
+            let mesh = Mesh::new(list.vertices, list.triangles).unwrap();
+            assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             let volume: f32 = (0..mesh.triangles.len())
                 .map(|i| {
                     let [a, b, c] = mesh.corners(i);
@@ -112,8 +124,8 @@ mod tests {
     #[test]
     fn refuse_what_cannot_be() {
         let fine = Link { radius: 0.2, straight: 0.1, tube_radius: 0.05, bend_parts: 12, sides: 12 };
-        assert_eq!(link(&Link { radius: 0.05, ..fine }).unwrap_err().field, "radius");
-        assert_eq!(link(&Link { straight: -1.0, ..fine }).unwrap_err().field, "straight");
-        assert_eq!(link(&Link { bend_parts: 1, ..fine }).unwrap_err().field, "bend_parts");
+        assert_eq!((Link { radius: 0.05, ..fine }).check().unwrap_err().field, "radius");
+        assert_eq!((Link { straight: -1.0, ..fine }).check().unwrap_err().field, "straight");
+        assert_eq!((Link { bend_parts: 1, ..fine }).check().unwrap_err().field, "bend_parts");
     }
 }

@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::{count, without_repairs};
-use crate::shape::{Mesh, ShapeError, positive};
+use super::{count, surface};
+use crate::shape::{ShapeError, TriangleList, positive};
 
 /// Least and most columns of points round the axis. The corners of a hexagon are in every sixth part of them.
 const COLUMNS: (u32, u32) = (12, 384);
@@ -133,64 +133,67 @@ struct Point {
 const BEFORE: i64 = -1_000_000;
 const BEHIND: i64 = 1_000_000;
 
-/// A bolt. Both its crest and its root lie on the true thread at the columns, and within it between them.
-///
-/// # Errors
-/// When a length is out of the range given with its field.
-pub fn bolt(bolt: &Bolt) -> Result<Mesh, ShapeError> {
-    let Bolt { thread, length, head_radius, head_height, head, segments } = *bolt;
-    thread.check()?;
-    columns(segments)?;
-    within("length", length, (thread.pitch, f32::MAX), "at least a pitch")?;
-    positive("head_height", head_height)?;
-    within("head_radius", head_radius, (thread.radius, f32::MAX), "above the radius of the thread")?;
-    let [length, pitch, top] = [length, thread.pitch, head_height].map(f64::from);
-    let tip = f64::from(thread.radius) - (DEPTH + CHAMFER) * pitch;
-    let columns = (0..segments).map(|k| {
-        let limited = |radius: f64, height: f64| radius.min(tip + height + length);
-        let mut column = threaded(&thread, (k, segments), (-length, 0.0), limited);
-        let rim = f64::from(head_radius) * head.outline(k, segments);
-        column.push(Point { number: BEHIND + 1, at: DVec2::new(rim, 0.0) });
-        column.push(Point { number: BEHIND + 2, at: DVec2::new(rim, top) });
-        column
-    });
-    let mut surface = Surface::of(columns.collect());
-    surface.cap(-length, End::First);
-    surface.cap(top, End::Last);
-    surface.mesh()
+impl Bolt {
+    /// Its surface. Both its crest and its root lie on the true thread at the columns, and within it between them.
+    ///
+    /// # Errors
+    /// When a length is out of the range given with its field.
+    pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
+        let Bolt { thread, length, head_radius, head_height, head, segments } = *self;
+        thread.check()?;
+        columns(segments)?;
+        within("length", length, (thread.pitch, f32::MAX), "at least a pitch")?;
+        positive("head_height", head_height)?;
+        within("head_radius", head_radius, (thread.radius, f32::MAX), "above the radius of the thread")?;
+        let [length, pitch, top] = [length, thread.pitch, head_height].map(f64::from);
+        let tip = f64::from(thread.radius) - (DEPTH + CHAMFER) * pitch;
+        let columns = (0..segments).map(|k| {
+            let limited = |radius: f64, height: f64| radius.min(tip + height + length);
+            let mut column = threaded(&thread, (k, segments), (-length, 0.0), limited);
+            let rim = f64::from(head_radius) * head.outline(k, segments);
+            column.push(Point { number: BEHIND + 1, at: DVec2::new(rim, 0.0) });
+            column.push(Point { number: BEHIND + 2, at: DVec2::new(rim, top) });
+            column
+        });
+        let mut surface = Surface::of(columns.collect());
+        surface.cap(-length, End::First);
+        surface.cap(top, End::Last);
+        Ok(surface.finish())
+    }
 }
 
-/// A nut. No part of it is nearer to the axis than its true thread.
-///
-/// # Errors
-/// When a length is out of the range given with its field.
-pub fn nut(nut: &Nut) -> Result<Mesh, ShapeError> {
-    let Nut { thread, clearance, height, outer_radius, outside, segments } = *nut;
-    thread.check()?;
-    columns(segments)?;
-    within("clearance", clearance, (0.0, f32::MAX), "0 or more")?;
-    within("height", height, (thread.pitch, f32::MAX), "at least a pitch")?;
-    let [pitch, clearance, half] =
-        [f64::from(thread.pitch), f64::from(clearance), 0.5 * f64::from(height)];
-    let mouth = f64::from(thread.radius) + clearance + CHAMFER * pitch;
-    // Between the columns a chord is nearer to the axis than its ends.
-    let sagitta = 1.0 / libm::cos(0.5 * TAU / f64::from(segments));
-    let least = (mouth * sagitta) as f32;
-    within("outer_radius", outer_radius, (least, f32::MAX), "outside of the thread and its chamfer")?;
-    let columns = (0..segments).map(|k| {
-        let widened = |radius: f64, height: f64| {
-            (radius + clearance).max(mouth - (half - height.abs())) * sagitta
-        };
-        let mut column = threaded(&thread, (k, segments), (-half, half), widened);
-        let rim = f64::from(outer_radius) * outside.outline(k, segments);
-        column.push(Point { number: BEHIND + 1, at: DVec2::new(rim, half) });
-        column.push(Point { number: BEHIND + 2, at: DVec2::new(rim, -half) });
-        column
-    });
-    let mut surface = Surface::of(columns.collect());
-    surface.close();
-    surface.turn();
-    surface.mesh()
+impl Nut {
+    /// Its surface. No part of it is nearer to the axis than its true thread.
+    ///
+    /// # Errors
+    /// When a length is out of the range given with its field.
+    pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
+        let Nut { thread, clearance, height, outer_radius, outside, segments } = *self;
+        thread.check()?;
+        columns(segments)?;
+        within("clearance", clearance, (0.0, f32::MAX), "0 or more")?;
+        within("height", height, (thread.pitch, f32::MAX), "at least a pitch")?;
+        let [pitch, clearance, half] =
+            [f64::from(thread.pitch), f64::from(clearance), 0.5 * f64::from(height)];
+        let mouth = f64::from(thread.radius) + clearance + CHAMFER * pitch;
+        // Between the columns a chord is nearer to the axis than its ends.
+        let sagitta = 1.0 / libm::cos(0.5 * TAU / f64::from(segments));
+        let least = (mouth * sagitta) as f32;
+        within("outer_radius", outer_radius, (least, f32::MAX), "outside of the thread and its chamfer")?;
+        let columns = (0..segments).map(|k| {
+            let widened =
+                |radius: f64, height: f64| (radius + clearance).max(mouth - (half - height.abs())) * sagitta;
+            let mut column = threaded(&thread, (k, segments), (-half, half), widened);
+            let rim = f64::from(outer_radius) * outside.outline(k, segments);
+            column.push(Point { number: BEHIND + 1, at: DVec2::new(rim, half) });
+            column.push(Point { number: BEHIND + 2, at: DVec2::new(rim, -half) });
+            column
+        });
+        let mut surface = Surface::of(columns.collect());
+        surface.close();
+        surface.turn();
+        Ok(surface.finish())
+    }
 }
 
 /// The points of a thread in column `k` of so many, from one height to another; `shaped` makes the radius of the surface from that of the
@@ -250,9 +253,7 @@ impl Surface {
             let first = surface.vertices.len() as u32;
             surface.columns.push(column.iter().zip(first..).map(|(p, i)| (i, p.number)).collect());
             // About +y, right-handed: from +x towards -z.
-            surface
-                .vertices
-                .extend(column.iter().map(|p| DVec3::new(p.at.x * cos, p.at.y, -p.at.x * sin)));
+            surface.vertices.extend(column.iter().map(|p| DVec3::new(p.at.x * cos, p.at.y, -p.at.x * sin)));
         }
         for k in 0..count {
             let next = (k + 1) % count;
@@ -291,9 +292,14 @@ impl Surface {
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
 
-    fn mesh(self) -> Result<Mesh, ShapeError> {
-        let vertices = self.vertices.iter().map(|v| v.as_vec3()).collect();
-        Ok(without_repairs(Mesh::new(vertices, self.triangles)?))
+    /// The triangles; what meets in the middle of an end is one vertex.
+    fn finish(self) -> TriangleList {
+        let mut welded = surface::Surface::default();
+        let index: Vec<u32> = self.vertices.iter().map(|v| welded.vertex(v.as_vec3())).collect();
+        for corners in self.triangles {
+            welded.triangle(corners.map(|i| index[i as usize]));
+        }
+        welded.finish()
     }
 }
 
@@ -342,8 +348,14 @@ fn within(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shape::Mesh;
 
     const THREAD: Thread = Thread { radius: 0.005, pitch: 0.0015 };
+
+    fn mesh(list: Result<TriangleList, ShapeError>) -> Mesh {
+        let TriangleList { vertices, triangles } = list.unwrap();
+        Mesh::new(vertices, triangles).unwrap()
+    }
 
     fn any_bolt(head: Grip) -> Bolt {
         Bolt { thread: THREAD, length: 0.02, head_radius: 0.008, head_height: 0.006, head, segments: 48 }
@@ -371,8 +383,8 @@ mod tests {
     #[test]
     fn bolts_and_nuts_are_closed_and_outwards_without_repairs() {
         for grip in [Grip::Hexagonal, Grip::Round] {
-            for mesh in [bolt(&any_bolt(grip)).unwrap(), nut(&any_nut(grip)).unwrap()] {
-                assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+            for mesh in [mesh(any_bolt(grip).triangles()), mesh(any_nut(grip).triangles())] {
+                assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             }
         }
     }
@@ -382,12 +394,12 @@ mod tests {
         // A regular polygon of n corners has this part of its circle's area.
         let polygon = 48.0 / TAU * (TAU / 48.0).sin();
         let circle = std::f64::consts::PI;
-        let made = volume(&bolt(&any_bolt(Grip::Round)).unwrap());
+        let made = volume(&mesh(any_bolt(Grip::Round).triangles()));
         let shank = circle * polygon * mean_square(0.005) * 0.02;
         let head = circle * polygon * 0.008 * 0.008 * 0.006;
         // The chamfer takes a little off the last pitch.
         assert!((0.985..1.0).contains(&(made / (shank + head))), "{}", made / (shank + head));
-        let made = volume(&nut(&any_nut(Grip::Hexagonal)).unwrap());
+        let made = volume(&mesh(any_nut(Grip::Hexagonal).triangles()));
         let outside = 2.0 * 3.0_f64.sqrt() * 0.008 * 0.008 * 0.008;
         let hole = circle * polygon / (0.5 * TAU / 48.0).cos().powi(2) * mean_square(0.0051) * 0.008;
         assert!((0.985..1.0).contains(&(made / (outside - hole))), "{}", made / (outside - hole));
@@ -395,7 +407,7 @@ mod tests {
 
     #[test]
     fn every_vertex_of_the_shank_lies_on_the_true_thread_or_under_the_chamfer() {
-        let mesh = bolt(&any_bolt(Grip::Round)).unwrap();
+        let mesh = mesh(any_bolt(Grip::Round).triangles());
         let mut met = 0;
         for v in mesh.vertices.iter().map(|v| v.as_dvec3()).filter(|v| v.y < -1e-9) {
             let (radius, angle) = (v.x.hypot(v.z), (-v.z).atan2(v.x));
@@ -411,7 +423,7 @@ mod tests {
         // A quarter of a turn about +y, from +x to -z, raises the crest by a quarter of the pitch.
         let up = 0.25 * f64::from(THREAD.pitch);
         assert!((THREAD.radius_at(0.25 * TAU, up) - 0.005).abs() < 1e-9);
-        let mesh = bolt(&any_bolt(Grip::Round)).unwrap();
+        let mesh = mesh(any_bolt(Grip::Round).triangles());
         let crest = |v: &&crate::Vec3| v.y < -0.005 && (v.x.hypot(v.z) - 0.005).abs() < 1e-7;
         let above_z = mesh.vertices.iter().filter(crest).find(|v| v.x.abs() < 1e-7 && v.z < 0.0).unwrap();
         let phase = f64::from(above_z.y) / f64::from(THREAD.pitch) - 0.25;
@@ -423,13 +435,19 @@ mod tests {
         let refused = |change: fn(&mut Bolt)| {
             let mut made = any_bolt(Grip::Hexagonal);
             change(&mut made);
-            bolt(&made).unwrap_err().field
+            made.triangles().unwrap_err().field
         };
         assert_eq!(refused(|b| b.segments = 50), "segments");
         assert_eq!(refused(|b| b.thread.pitch = 0.006), "pitch");
         assert_eq!(refused(|b| b.head_radius = f32::NAN), "head_radius");
         assert_eq!(refused(|b| b.length = 0.001), "length");
-        assert_eq!(nut(&Nut { outer_radius: 0.0052, ..any_nut(Grip::Round) }).unwrap_err().field, "outer_radius");
-        assert_eq!(nut(&Nut { clearance: -0.1, ..any_nut(Grip::Round) }).unwrap_err().field, "clearance");
+        assert_eq!(
+            (Nut { outer_radius: 0.0052, ..any_nut(Grip::Round) }).triangles().unwrap_err().field,
+            "outer_radius"
+        );
+        assert_eq!(
+            (Nut { clearance: -0.1, ..any_nut(Grip::Round) }).triangles().unwrap_err().field,
+            "clearance"
+        );
     }
 }
