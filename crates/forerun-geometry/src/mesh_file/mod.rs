@@ -18,6 +18,7 @@ mod ply_header;
 mod polygon;
 mod stl;
 
+pub use crate::shape::TriangleList;
 pub use gltf::{ReadBeside, parse_gltf};
 pub use obj::parse_obj;
 pub use ply::parse_ply;
@@ -67,15 +68,6 @@ impl Default for MeshFileOptions {
     fn default() -> Self {
         MeshFileOptions { scale: 1.0, up: UpAxis::Y }
     }
-}
-
-/// What a file says, before anything is checked but the numbers themselves.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TriangleList {
-    /// Vertices. In the file's unit of length.
-    pub vertices: Vec<Vec3>,
-    /// Vertex indices of each triangle.
-    pub triangles: Vec<[u32; 3]>,
 }
 
 /// Why bytes are no mesh file.
