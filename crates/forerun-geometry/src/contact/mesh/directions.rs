@@ -23,6 +23,8 @@ pub(super) struct Direction<'a> {
     pub(super) surface: Surface<'a>,
     /// The triangles of the surface if it is a mesh.
     pub(super) skin: Option<Skin<'a>>,
+    /// By how much the surface may take edges and corners to be farther away than they are. Metres.
+    pub(super) blur: f32,
     /// From the frame of the points to that of the field: rotation.
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
@@ -68,9 +70,11 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
     let to_field = field.pose.inverse() * sampled.pose;
     let surface = surface_of(field.shape, 2.0 * sampled.shape.half_thickness())?;
     // The triangles of a mended mesh do not tell its sides.
-    let skin = match field.shape {
-        Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => Some(Skin::of(mesh)),
-        _ => None,
+    let (skin, blur) = match field.shape {
+        Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
+            (Some(Skin::of(mesh)), mesh.collider().blur)
+        }
+        _ => (None, 0.0),
     };
     let points = match (sampled.shape, field.shape) {
         (Shape::Mesh(mesh), _) => Points::Mesh(&mesh.collider().samples),
@@ -94,6 +98,7 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         points,
         surface,
         skin,
+        blur,
         axes: to_field.axes(),
         origin: to_field.position,
         field_pose: field.pose,
