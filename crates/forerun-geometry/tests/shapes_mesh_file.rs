@@ -120,7 +120,7 @@ fn errors_name_file_place_and_remedy() {
     let path = file("holed.obj", text.rsplit_once("\nf").unwrap().0);
     let error = load_mesh(&path, 1.0).unwrap_err().to_string();
     assert!(error.contains("holed.obj: the mesh is not closed: 3 edges"), "{error}");
-    assert!(!load_open_mesh(&path, 1.0).unwrap().closed);
+    assert!(!load_open_mesh(&path, 1.0).unwrap().has_inside());
     for name in ["empty.obj", "empty.stl"] {
         assert!(matches!(load_mesh(file(name, ""), 1.0).unwrap_err().problem, MeshFileProblem::Parse(_)));
     }

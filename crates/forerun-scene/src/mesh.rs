@@ -330,7 +330,7 @@ mod tests {
         };
         knot.check().unwrap();
         let mesh = MeshEntry::torus_knot(knot).build(Path::new("")).unwrap();
-        assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+        assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
         let length: f32 =
             (0..1000).map(|i| knot.point(i, 1000).distance(knot.point((i + 1) % 1000, 1000))).sum();
         // Pappus: section times the length of the middle line.

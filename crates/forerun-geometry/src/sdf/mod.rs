@@ -7,24 +7,26 @@
 use crate::Vec3;
 use crate::shape::Mesh;
 
-mod bake;
+pub(crate) mod bake;
 mod field;
+pub(crate) mod kept;
 pub(crate) mod lanes;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
-mod pseudo_normals;
+pub(crate) mod pseudo_normals;
 mod samples;
 
+pub use bake::BakeProgress;
 pub use field::Field;
+pub use kept::{BakeKey, KeptError};
 pub use samples::{Sample, Samples};
 
-use nearest::Skin;
 use pseudo_normals::{EdgeKind, PseudoNormals};
 
 /// All that contact needs to know of a mesh beyond its triangles, computed once. The default finds nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshCollider {
-    /// Signed distances; none for an open mesh, which has no inside.
+    /// Signed distances; none for a mesh without an inside.
     pub field: Option<Field>,
     /// Points of the surface: vertices, and points along long edges.
     pub samples: Samples,
@@ -39,12 +41,10 @@ const EDGE_SAMPLES_MAX: f32 = 16_384.0;
 const OPEN_EDGE_PARTS: f32 = 4.0;
 
 impl MeshCollider {
-    /// The collider of a mesh that is complete but for it. Takes some milliseconds for thousands of triangles.
+    /// The collider of a mesh that is complete but for it.
     ///
-    /// An open mesh gets no field: contact goes to its triangles, and only their front collides.
-    pub(crate) fn new(mesh: &Mesh) -> MeshCollider {
-        let normals = PseudoNormals::new(mesh);
-        let field = mesh.closed.then(|| bake::bake(Skin { mesh, normals: &normals }));
+    /// An open mesh has no field: contact goes to its triangles, and only their front collides.
+    pub(crate) fn new(mesh: &Mesh, normals: PseudoNormals, field: Option<Field>) -> MeshCollider {
         let samples = Samples::new(sample_points(mesh, &normals));
         let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
         MeshCollider { field, samples, radius, normals }
@@ -73,7 +73,7 @@ fn sample_points(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Sample> {
         })
         .collect();
     let total = sharp.iter().map(|([a, b], ..)| a.distance(*b)).sum::<f32>();
-    let wished = if mesh.closed {
+    let wished = if mesh.has_inside() {
         2.0 * mesh.half_thickness()
     } else {
         total / (OPEN_EDGE_PARTS * sharp.len().max(1) as f32)

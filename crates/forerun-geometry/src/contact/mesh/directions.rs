@@ -123,6 +123,6 @@ fn surface_of(shape: &Shape, depth_limit: f32) -> Option<Surface<'_>> {
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.
 fn region_of(mesh: &Mesh, to_primitive: &Pose, margin: f32) -> Region {
     let radius = mesh.collider().radius;
-    let spacing = if mesh.closed { 2.0 * mesh.half_thickness() } else { radius };
+    let spacing = if mesh.has_inside() { 2.0 * mesh.half_thickness() } else { radius };
     Region { centre: to_primitive.position, radius: radius + margin, spacing }
 }
