@@ -1,16 +1,15 @@
 //! Triangle meshes of a scene: from a file, or made by a formula.
 
-use std::path::Path;
-
 use forerun_geometry::Vec3;
 use forerun_geometry::mesh_file::{
-    MeshFileError, MeshFileOptions, MeshFileProblem, TriangleList, UpAxis, load_mesh, load_open_mesh,
+    LIKELY_MILLIMETRES, MeshFileError, MeshFileOptions, MeshFileProblem, TriangleList, UpAxis, load_triangles,
 };
-use forerun_geometry::shape::Mesh;
 use forerun_geometry::shape::mesh_make::{ball, torus};
+use forerun_geometry::shape::{Inside, Mesh};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Fault, Within};
+use crate::mesh_baking::BakeSite;
 use crate::range;
 
 /// A mesh in a scene file: exactly one of `file`, `torus`, `torus_knot` and `ball`.
@@ -185,16 +184,14 @@ impl MeshEntry {
     }
 
     /// The mesh itself. Reads a file if there is one to read.
-    pub(crate) fn build(&self, folder: &Path) -> Result<Mesh, Fault> {
+    pub(crate) fn build(&self, site: &BakeSite<'_>) -> Result<Mesh, Fault> {
         let scale = self.scale;
         if let Some(file) = &self.file {
-            let load = if self.open { load_open_mesh } else { load_mesh };
-            let options = MeshFileOptions { scale, up: self.up.into() };
-            load(folder.join(file), options).map_err(|error| file_fault(&error)).in_field("file")
+            self.load(file, site).in_field("file")
         } else if let Some(t) = &self.torus {
             torus(t.radius * scale, t.tube_radius * scale, t.segments, t.sides).map_err(not_possible)
         } else if let Some(knot) = &self.torus_knot {
-            self.scaled(knot.build()).in_field("torus_knot")
+            self.scaled(knot.build(), site).in_field("torus_knot")
         } else if let Some(b) = &self.ball {
             ball(b.radius * scale, b.parts).map_err(not_possible)
         } else {
@@ -202,10 +199,29 @@ impl MeshEntry {
         }
     }
 
-    fn scaled(&self, triangles: TriangleList) -> Result<Mesh, Fault> {
+    fn load(&self, file: &str, site: &BakeSite<'_>) -> Result<Mesh, Fault> {
+        let path = site.folder.join(file);
+        let options = MeshFileOptions { scale: self.scale, up: self.up.into() };
+        let list = load_triangles(&path, options).map_err(|error| file_fault(&error))?;
+        let mesh = site.make(list, self.inside()).map_err(|error| {
+            file_fault(&MeshFileError { path: path.clone(), problem: MeshFileProblem::Mesh(error) })
+        })?;
+        let bounds = mesh.bounds();
+        let size = (bounds.max - bounds.min).max_element();
+        if mesh.has_inside() && size > LIKELY_MILLIMETRES {
+            site.warn(&format!("is {size} m large; write scale = 0.001 if the file is in millimetres"));
+        }
+        Ok(mesh)
+    }
+
+    fn scaled(&self, triangles: TriangleList, site: &BakeSite<'_>) -> Result<Mesh, Fault> {
         let vertices = triangles.vertices.into_iter().map(|v| v * self.scale).collect();
-        let make = if self.open { Mesh::open } else { Mesh::new };
-        make(vertices, triangles.triangles).map_err(not_possible)
+        let list = TriangleList { vertices, triangles: triangles.triangles };
+        site.make(list, self.inside()).map_err(not_possible)
+    }
+
+    fn inside(&self) -> Inside {
+        if self.open { Inside::Optional } else { Inside::Needed }
     }
 }
 
@@ -377,7 +393,7 @@ mod tests {
             sides: 32,
         };
         knot.check().unwrap();
-        let mesh = MeshEntry::torus_knot(knot).build(Path::new("")).unwrap();
+        let mesh = MeshEntry::torus_knot(knot).build(&BakeSite::nowhere()).unwrap();
         assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
         let length: f32 =
             (0..1000).map(|i| knot.point(i, 1000).distance(knot.point((i + 1) % 1000, 1000))).sum();
