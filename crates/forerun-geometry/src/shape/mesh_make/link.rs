@@ -93,7 +93,7 @@ mod tests {
         for straight in [0.0, 0.01, 0.5] {
             let made = Link { radius: 0.2, straight, tube_radius: 0.05, bend_parts: 24, sides: 24 };
             let mesh = link(&made).unwrap();
-            assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+            assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             let volume: f32 = (0..mesh.triangles.len())
                 .map(|i| {
                     let [a, b, c] = mesh.corners(i);

@@ -256,8 +256,8 @@ impl Surface {
         }
         for k in 0..count {
             let next = (k + 1) % count;
-            // A turn later the helix is a pitch higher: the same point has the number of one turn less.
-            let turned = if next == 0 { PROFILE.len() as i64 } else { 0 };
+            // A turn on, the helix is a pitch higher: what was a number there is one of the turn before.
+            let turned = if next == 0 { -(PROFILE.len() as i64) } else { 0 };
             strip(&surface.columns[k], &surface.columns[next], turned, &mut surface.triangles);
         }
         surface
@@ -372,7 +372,7 @@ mod tests {
     fn bolts_and_nuts_are_closed_and_outwards_without_repairs() {
         for grip in [Grip::Hexagonal, Grip::Round] {
             for mesh in [bolt(&any_bolt(grip)).unwrap(), nut(&any_nut(grip)).unwrap()] {
-                assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+                assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             }
         }
     }
