@@ -32,11 +32,17 @@ pub struct MeshCollider {
     pub samples: Samples,
     /// Distance from the origin to the farthest vertex. Metres.
     pub radius: f32,
+    /// How far off its surface the field sees points of its own sharp edges and corners: none where all is smooth. Metres.
+    ///
+    /// Between its nodes a field cuts edges off that are askew to its grid. Contact asks the triangles there.
+    pub(crate) blur: f32,
     normals: PseudoNormals,
 }
 
 /// Most points along edges; longer spacings where there would be more.
 const EDGE_SAMPLES_MAX: f32 = 16_384.0;
+/// Surfaces are smooth whose field is off by less than this part of a cell.
+const BLUR_PART: f32 = 1.0 / 6.0;
 /// Points along an edge of middling length of an open mesh, whose thickness says nothing.
 const OPEN_EDGE_PARTS: f32 = 4.0;
 
@@ -47,7 +53,8 @@ impl MeshCollider {
     pub(crate) fn new(mesh: &Mesh, normals: PseudoNormals, field: Option<Field>) -> MeshCollider {
         let samples = Samples::new(sample_points(mesh, &normals));
         let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
-        MeshCollider { field, samples, radius, normals }
+        let blur = field.as_ref().map_or(0.0, |field| blur(field, &samples));
+        MeshCollider { field, samples, radius, blur, normals }
     }
 
     /// Memory that it takes.
@@ -55,6 +62,12 @@ impl MeshCollider {
     pub fn bytes(&self) -> usize {
         self.field.as_ref().map_or(0, Field::bytes) + self.samples.bytes() + self.normals.bytes()
     }
+}
+
+/// [`MeshCollider::blur`]: how far off the points of the surface seem to be, where that is too much to be left alone.
+fn blur(field: &Field, samples: &Samples) -> f32 {
+    let off = samples.iter().fold(0.0_f32, |off, s| off.max(field.distance_and_gradient(s.point).0));
+    if off > BLUR_PART * field.cell() { off } else { 0.0 }
 }
 
 /// The vertices, and points along ridges and boundaries no further apart than the thickness of the mesh (of an open

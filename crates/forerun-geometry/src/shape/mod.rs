@@ -18,6 +18,7 @@ mod mesh_ray;
 mod mesh_report;
 mod mesh_topology;
 mod reach;
+mod triangle_list;
 mod triangle_tree;
 
 pub use compound::Compound;
@@ -26,6 +27,7 @@ pub use mesh::Mesh;
 pub use mesh_draft::{Inside, MeshDraft, MeshOptions};
 pub(crate) use mesh_ray::FirstHits;
 pub use mesh_report::{Enclosure, MeshError, MeshRepairs};
+pub use triangle_list::TriangleList;
 
 /// A shape in a frame of its own. Cloning is cheap: large shapes are shared.
 ///
