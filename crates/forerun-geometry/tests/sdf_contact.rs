@@ -461,9 +461,9 @@ fn wedges_touch_at_the_corners_of_their_joint() {
     for gap in [0.0, 0.002, -0.002] {
         let points = all_points(&contact(&at(&below, Vec3::ZERO), &at(&above, normal * gap)));
         for corner in [inner, outer].iter().flat_map(|c| [-0.5, 0.5].map(|z| *c + Vec3::Z * z)) {
-            let point = points.iter().min_by(|a, b| {
-                a.position.distance(corner).total_cmp(&b.position.distance(corner))
-            });
+            let point = points
+                .iter()
+                .min_by(|a, b| a.position.distance(corner).total_cmp(&b.position.distance(corner)));
             let point = point.expect("has points");
             assert!(point.position.distance(corner) < 0.01, "none at {corner}, gap {gap}");
             assert!((point.separation - gap).abs() < 5e-4, "{} at {corner}, gap {gap}", point.separation);

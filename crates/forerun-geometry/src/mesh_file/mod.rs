@@ -18,8 +18,8 @@ mod ply_header;
 mod polygon;
 mod stl;
 
-pub use gltf::{ReadBeside, parse_gltf};
 pub use crate::shape::TriangleList;
+pub use gltf::{ReadBeside, parse_gltf};
 pub use obj::parse_obj;
 pub use ply::parse_ply;
 pub use stl::parse_stl;

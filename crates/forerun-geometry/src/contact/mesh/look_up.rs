@@ -114,7 +114,8 @@ impl Direction<'_> {
             let flat = matches!(self.surface, Surface::Field(_)) && eight.facing_max.0[i] <= FLAT_MAX;
             let normal = if flat { -eight.outwards.lane(i) } else { answers.normal.lane(i) };
             let candidate = self.candidate(ball, normal, answers.distance.0[i], index);
-            candidates.push(Candidate { rough: answers.inset == 0.0 && !flat && self.blur == 0.0, ..candidate });
+            candidates
+                .push(Candidate { rough: answers.inset == 0.0 && !flat && self.blur == 0.0, ..candidate });
         }
     }
 

@@ -1,11 +1,11 @@
 //! A link of a chain: a tube along two straights and two bends.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::count;
-use crate::shape::{Mesh, ShapeError, positive};
+use super::{below, count};
+use crate::shape::{ShapeError, TriangleList, positive};
 
 /// A link in the plane y = 0, long along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,40 +22,48 @@ pub struct Link {
     pub sides: u32,
 }
 
-/// A link. Its vertices lie on the true tube.
-///
-/// # Errors
-/// When a number is out of the range given with its field.
-pub fn link(link: &Link) -> Result<Mesh, ShapeError> {
-    let Link { radius, straight, tube_radius, bend_parts, sides } = *link;
-    positive("tube_radius", tube_radius)?;
-    if !(radius > tube_radius && radius.is_finite()) {
-        let message = format!("must be above tube_radius ({tube_radius}), is {radius}");
-        return Err(ShapeError::new("radius", message));
-    }
-    if !(straight >= 0.0 && straight.is_finite()) {
-        return Err(ShapeError::new("straight", format!("must be 0 or more, is {straight}")));
-    }
-    count("bend_parts", bend_parts, 2..=512)?;
-    count("sides", sides, 3..=super::FINEST)?;
-    let sections = sections(link);
-    let mut vertices = Vec::with_capacity(sections.len() * sides as usize);
-    for (middle, outward) in &sections {
-        for side in 0..sides {
-            let turn = super::on_circle(side, sides) * f64::from(tube_radius);
-            vertices.push((*middle + *outward * turn.x + DVec3::Y * turn.y).as_vec3());
+impl Link {
+    /// Whether it can be made.
+    ///
+    /// # Errors
+    /// When a parameter is out of its range.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        let Link { radius, straight, tube_radius, bend_parts, sides } = *self;
+        positive("radius", radius)?;
+        below("tube_radius", tube_radius, radius, "radius")?;
+        if !(straight >= 0.0 && straight.is_finite()) {
+            return Err(ShapeError::new("straight", format!("must be 0 or more, is {straight}")));
         }
+        count("bend_parts", bend_parts, 2..=512)?;
+        count("sides", sides, 3..=super::FINEST)
     }
-    let rounds = sections.len() as u32;
-    let at = |section: u32, side: u32| (section % rounds) * sides + side % sides;
-    let mut triangles = Vec::with_capacity(2 * vertices.len());
-    for i in 0..rounds {
-        for j in 0..sides {
-            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-            triangles.extend([[a, b, c], [a, c, d]]);
+
+    /// Its surface. The vertices lie on the true tube.
+    ///
+    /// # Errors
+    /// As [`Link::check`].
+    pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
+        self.check()?;
+        let (sections, sides) = (sections(self), self.sides);
+        let mut vertices = Vec::with_capacity(sections.len() * sides as usize);
+        for (middle, outward) in &sections {
+            for side in 0..sides {
+                let (sin, cos) = libm::sincos(TAU * f64::from(side) / f64::from(sides));
+                let across = (*outward * cos + DVec3::Y * sin) * f64::from(self.tube_radius);
+                vertices.push((*middle + across).as_vec3());
+            }
         }
+        let rounds = sections.len() as u32;
+        let at = |section: u32, side: u32| (section % rounds) * sides + side % sides;
+        let mut triangles = Vec::with_capacity(2 * vertices.len());
+        for i in 0..rounds {
+            for j in 0..sides {
+                let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        Ok(TriangleList { vertices, triangles })
     }
-    Ok(Mesh::new(vertices, triangles)?)
 }
 
 /// Where the tube is cut, and which way is outwards there: from +x towards +z.
@@ -92,7 +100,7 @@ mod tests {
     fn links_are_closed_and_have_the_volume_of_their_tube() {
         for straight in [0.0, 0.01, 0.5] {
             let made = Link { radius: 0.2, straight, tube_radius: 0.05, bend_parts: 24, sides: 24 };
-            let mesh = link(&made).unwrap();
+            let mesh = made.triangles().unwrap().mesh().unwrap();
             assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             let volume: f32 = (0..mesh.triangles.len())
                 .map(|i| {
@@ -112,8 +120,8 @@ mod tests {
     #[test]
     fn refuse_what_cannot_be() {
         let fine = Link { radius: 0.2, straight: 0.1, tube_radius: 0.05, bend_parts: 12, sides: 12 };
-        assert_eq!(link(&Link { radius: 0.05, ..fine }).unwrap_err().field, "radius");
-        assert_eq!(link(&Link { straight: -1.0, ..fine }).unwrap_err().field, "straight");
-        assert_eq!(link(&Link { bend_parts: 1, ..fine }).unwrap_err().field, "bend_parts");
+        assert_eq!(Link { radius: 0.05, ..fine }.check().unwrap_err().field, "tube_radius");
+        assert_eq!(Link { straight: -1.0, ..fine }.check().unwrap_err().field, "straight");
+        assert_eq!(Link { bend_parts: 1, ..fine }.check().unwrap_err().field, "bend_parts");
     }
 }

@@ -30,10 +30,10 @@ pub use gear::Gear;
 pub use jack::Jack;
 pub use knot::TorusKnot;
 pub use letter::Letter;
-pub use link::{Link, link};
+pub use link::Link;
 pub use mug::Mug;
 pub use revolution::{Torus, ring, torus};
-pub use thread::{Bolt, Grip, Nut, Thread, bolt, nut};
+pub use thread::{Bolt, Grip, Nut, Thread};
 
 /// Most segments or sides that a maker accepts.
 const FINEST: u32 = 1024;
