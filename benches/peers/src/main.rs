@@ -32,6 +32,7 @@ mod table;
 mod true_mesh;
 
 use std::fs;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -40,7 +41,7 @@ use serde::Serialize;
 
 use crate::engine::Kind;
 use crate::measure::{Answer, Question, Task};
-use crate::mesh_run::Extent;
+use crate::mesh_run::{Extent, Means};
 use crate::rounds::{Plan, SceneAndFrames};
 
 /// Of a scene that is in no set.
@@ -77,6 +78,9 @@ struct Args {
     /// With --one: what to tell of it
     #[arg(long, value_enum, hide = true, default_value_t = Question::Times)]
     ask: Question,
+    /// With --one: folder where the hulls of meshes are kept from process to process
+    #[arg(long, hide = true)]
+    hulls: Option<PathBuf>,
 }
 
 /// The fields of `--json`.
@@ -137,9 +141,9 @@ fn run(args: &Args) -> Result<(), String> {
 
 /// What one process tells.
 fn answer(args: &Args, task: &Task) -> Answer {
+    let means = Means { limit: Duration::from_secs_f64(args.limit), folder: args.hulls.as_deref() };
     let mesh = |extent| {
-        let limit = Duration::from_secs_f64(args.limit);
-        mesh_run::run(task, extent, limit)
+        mesh_run::run(task, extent, means)
             .map_or_else(Answer::Cannot, |answer| Answer::Mesh(Box::new(answer)))
     };
     match args.ask {

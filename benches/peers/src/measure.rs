@@ -61,7 +61,7 @@ pub(crate) struct Times {
 pub(crate) fn times(task: &Task) -> Answer {
     let run = || {
         let mut stage = Stage::of(&open(&task.scene)?)?;
-        engine::prepare(task.kind, &mut stage)?;
+        engine::prepare(task.kind, &mut stage, None)?;
         restart_peak();
         let mut world = engine::build(task.kind, &stage, task.threads)?;
         let clock = Clock::system();
@@ -85,7 +85,7 @@ pub(crate) fn quality(task: &Task) -> Answer {
         let scene = open(&task.scene)?;
         let mut meter = Meter::new(&scene)?;
         let mut stage = Stage::of(&scene)?;
-        let hulls = engine::prepare(task.kind, &mut stage)?.hulls;
+        let hulls = engine::prepare(task.kind, &mut stage, None)?.hulls;
         let mut world = engine::build(task.kind, &stage, task.threads)?;
         for frame in 0..task.frames {
             world.step()?;

@@ -3,6 +3,7 @@
 //!
 //! Motions are kept while the steps are timed and looked at afterwards, so that looking costs no step its caches.
 
+use std::path::Path;
 use std::time::Duration;
 
 use cpu_time::ProcessTime;
@@ -66,12 +67,21 @@ pub(crate) struct Worth {
     pub(crate) links: Option<LinkCount>,
 }
 
-/// Steps until the frames are done or `limit` is over.
-pub(crate) fn run(task: &Task, extent: Extent, limit: Duration) -> Result<MeshAnswer, String> {
+/// With what it is done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Means<'a> {
+    /// How long the steps may take in all.
+    pub(crate) limit: Duration,
+    /// Where the hulls of meshes are kept from process to process.
+    pub(crate) folder: Option<&'a Path>,
+}
+
+/// Steps until the frames are done or the time is over.
+pub(crate) fn run(task: &Task, extent: Extent, means: Means<'_>) -> Result<MeshAnswer, String> {
     on_its_threads(task, || {
-        let made = make(task, extent)?;
+        let made = make(task, extent, means.folder)?;
         let Made { mut world, setup_ms, meshes, fit, heap_bytes } = made;
-        let (times, motions) = step(&mut *world, task.frames, limit)?;
+        let (times, motions) = step(&mut *world, task.frames, means.limit)?;
         drop(world);
         let worth = if extent == Extent::All { Some(worth(&open(&task.scene)?, &motions)?) } else { None };
         Ok(MeshAnswer { setup_ms, meshes, fit, heap_bytes, times, worth })
@@ -87,7 +97,7 @@ struct Made {
     heap_bytes: Option<u64>,
 }
 
-fn make(task: &Task, extent: Extent) -> Result<Made, String> {
+fn make(task: &Task, extent: Extent, folder: Option<&Path>) -> Result<Made, String> {
     let heap_before = heap::in_use();
     let mut stage = Stage::of(&open(&task.scene)?)?;
     let meshes = shapes::moving(&stage);
@@ -95,7 +105,7 @@ fn make(task: &Task, extent: Extent) -> Result<Made, String> {
     if extent == Extent::HeapOfBoxes {
         put_boxes(&mut stage)?;
     } else {
-        setup_ms += shapes::prepare(task.kind, &mut stage, &meshes)?;
+        setup_ms += shapes::prepare(task.kind, &mut stage, &meshes, folder)?;
         if extent == Extent::All {
             fit = Some(shapes::fit(task.kind, &stage, &meshes)?);
         }

@@ -1,7 +1,9 @@
 //! Meshes: the scenes where meshes move, on every engine, and one table of what its shapes cost, how long its steps take and what they are worth.
 
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
+use std::{env, fs, process};
 
 use serde::Serialize;
 
@@ -57,15 +59,34 @@ pub(crate) struct Measured {
     pub(crate) worth: Worth,
 }
 
+/// A folder of this process for the hulls that its children share, gone with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Result<Self, String> {
+        let path = env::temp_dir().join(format!("forerun-peers-{}", process::id()));
+        fs::create_dir_all(&path).map_err(|error| format!("{} cannot be made: {error}", path.display()))?;
+        Ok(Folder(path))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What cannot be removed is left to the system: it is a temporary folder.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
 /// Runs the whole plan, every engine in turn in processes of its own.
 pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
     let programs = Programs::build(&plan.engines, &[1])?;
+    let folder = Folder::new()?;
     let mut rows = Vec::new();
     for SceneAndFrames { scene, frames } in &plan.scenes {
         for kind in &plan.engines {
             let task = Task { scene: scene.clone(), kind: *kind, frames: *frames, threads: 1 };
             eprintln!("{task}");
-            let outcome = match measure(&programs, &task, plan) {
+            let outcome = match measure(&programs, &task, plan, &folder.0) {
                 Ok(measured) => Outcome::Measured(Box::new(measured)),
                 Err(why) => Outcome::Cannot(why),
             };
@@ -81,11 +102,13 @@ pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-fn measure(programs: &Programs, task: &Task, plan: &Plan) -> Result<Measured, String> {
+fn measure(programs: &Programs, task: &Task, plan: &Plan, folder: &Path) -> Result<Measured, String> {
     // Steps have a limit of their own; setting up and looking need some time too.
     let patience = 2 * plan.limit + Duration::from_secs(60);
     let ask = |question: Question| -> Result<MeshAnswer, String> {
-        let words = ["--limit".to_owned(), plan.limit.as_secs_f64().to_string()];
+        let folder = folder.to_string_lossy().into_owned();
+        let words =
+            ["--limit".to_owned(), plan.limit.as_secs_f64().to_string(), "--hulls".to_owned(), folder];
         match programs.ask_within(task, question, patience, &words)? {
             Answer::Mesh(answer) => Ok(*answer),
             Answer::Cannot(why) => Err(why),

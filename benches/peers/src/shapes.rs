@@ -1,5 +1,6 @@
 //! Shapes: what each engine makes of a mesh that moves: how long that takes, and how far it is from the mesh.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use cpu_time::ProcessTime;
@@ -22,7 +23,7 @@ pub(crate) struct Fit {
     pub(crate) corners: usize,
     /// Farthest that the mesh's surface is from that of the engine's shape, outside or buried in it. Metres.
     pub(crate) off_m: f32,
-    /// How wide the engine's shape is open at the origin of its frame, as a part of how wide the mesh is; none where that is within the mesh.
+    /// How far the engine's shape is open around the origin of its frame, as a part of how far the mesh is; none where the origin is within the mesh.
     pub(crate) opening: Option<f32>,
 }
 
@@ -40,10 +41,15 @@ pub(crate) fn moving(stage: &Stage) -> Vec<(usize, Arc<Mesh>)> {
 }
 
 /// Makes the stage what the engine takes, and says how long making the shapes from triangles took: of ours the fields once more, of others the cutting.
-/// CPU milliseconds.
-pub(crate) fn prepare(kind: Kind, stage: &mut Stage, meshes: &[(usize, Arc<Mesh>)]) -> Result<f64, String> {
+/// Pieces are kept in a folder, if one is given. CPU milliseconds.
+pub(crate) fn prepare(
+    kind: Kind,
+    stage: &mut Stage,
+    meshes: &[(usize, Arc<Mesh>)],
+    folder: Option<&Path>,
+) -> Result<f64, String> {
     if kind != Kind::Forerun {
-        return Ok(engine::prepare(kind, stage)?.cpu_ms);
+        return Ok(engine::prepare(kind, stage, folder)?.cpu_ms);
     }
     let start = ProcessTime::now();
     for (_, mesh) in meshes {
@@ -97,9 +103,23 @@ fn of_hulls(_: &Shape, _: &Arc<Mesh>) -> Result<Fit, String> {
 fn compare(mesh: &Arc<Mesh>, distance: impl Fn(Vec3) -> f32) -> Fit {
     let points = surface::points(&Shape::Mesh(mesh.clone()));
     let off_m = points.iter().map(|p| distance(*p).abs()).fold(0.0, f32::max);
-    let open_m = TrueMesh::new(mesh.clone()).signed_distance(Vec3::ZERO);
-    let opening = (open_m > 0.0).then(|| distance(Vec3::ZERO).max(0.0) / open_m);
-    Fit { off_m, opening, ..Fit::default() }
+    let is_hollow = TrueMesh::new(mesh.clone()).signed_distance(Vec3::ZERO) > 0.0;
+    Fit { off_m, opening: is_hollow.then(|| opening(&points, distance)), ..Fit::default() }
+}
+
+/// How far one gets from the origin to the nearest points of a surface before the shape is in the way, as a part of how far these are. Only the sides that
+/// distances tell count: in the middle of a hole fields are coarse.
+fn opening(points: &[Vec3], distance: impl Fn(Vec3) -> f32) -> f32 {
+    const STEPS: u8 = 250;
+    /// Points that are farther by this factor are looked at too.
+    const NEAR: f32 = 1.2;
+    let nearest = points.iter().map(|p| p.length()).fold(f32::INFINITY, f32::min);
+    let free = |point: &Vec3| {
+        let way = *point * (nearest / point.length());
+        let at = |k: &u8| f32::from(*k) / 200.0;
+        (0..STEPS).find(|k| distance(way * at(k)) <= 0.0).map_or(NEAR, |k| at(&k))
+    };
+    points.iter().filter(|p| p.length() < NEAR * nearest).map(free).fold(NEAR, f32::min)
 }
 
 #[cfg(test)]
@@ -120,7 +140,7 @@ mod tests {
         let thicker = compare(&mesh, |p| exact.signed_distance(p) - 0.01);
         assert!((thicker.off_m - 0.01).abs() < 1e-4, "{}", thicker.off_m);
         // Its hole is 0.3 m wide to every side.
-        assert!((thicker.opening.unwrap() - 0.29 / 0.3).abs() < 1e-3, "{:?}", thicker.opening);
+        assert!((thicker.opening.unwrap() - 0.29 / 0.3).abs() < 0.006, "{:?}", thicker.opening);
     }
 
     #[test]
