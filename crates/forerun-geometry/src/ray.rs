@@ -253,7 +253,7 @@ fn mesh_hit(mesh: &Mesh, line: &Line) -> Option<Hit> {
         Some(Hit { distance: front.t, normal: Some(mesh.face_vector(front.triangle).normalize_or_zero()) })
     } else if back.t.is_finite() {
         let normal = -mesh.face_vector(back.triangle).normalize_or_zero();
-        Some(if mesh.closed { Hit::INSIDE } else { Hit { distance: back.t, normal: Some(normal) } })
+        Some(if mesh.has_inside() { Hit::INSIDE } else { Hit { distance: back.t, normal: Some(normal) } })
     } else {
         None
     }

@@ -18,7 +18,7 @@ fn volume(mesh: Mesh) -> f32 {
 fn a_clean_mesh_is_taken_as_it_is() {
     let (vertices, triangles) = cube();
     let mesh = Mesh::new(vertices.clone(), triangles.clone()).unwrap();
-    assert!(mesh.closed && mesh.repairs.is_none());
+    assert!(mesh.has_inside() && mesh.repairs.is_none());
     assert_eq!((mesh.vertices, mesh.triangles), (vertices, triangles));
 }
 
@@ -101,9 +101,9 @@ fn an_open_mesh_is_refused_by_the_place_of_its_hole() {
     let message = error.to_string();
     assert!(message.contains("3 edges") && message.contains(&first[0].to_string()), "{message}");
     let open = Mesh::open(vertices.clone(), triangles).unwrap();
-    assert!(!open.closed && open.half_thickness().is_infinite());
+    assert!(!open.has_inside() && open.half_thickness().is_infinite());
     // What is closed is closed, however it is asked for.
-    assert!(Mesh::open(vertices, cube().1).unwrap().closed);
+    assert!(Mesh::open(vertices, cube().1).unwrap().has_inside());
 }
 
 #[test]

@@ -110,7 +110,7 @@ fn triangles_in(mesh: &Mesh, aabb: &Aabb) -> Vec<usize> {
 fn holds(mesh: &Mesh, point: Vec3) -> bool {
     // Any way out will do; one that follows no axis meets the fewest edges of what people build.
     let way_out = DVec3::new(0.48, 0.64, 0.6);
-    if !mesh.closed || !mesh.bounds().contains(point) {
+    if !mesh.has_inside() || !mesh.bounds().contains(point) {
         return false;
     }
     let first = mesh.first_hits(point.as_dvec3(), way_out, |first| first.front.t.min(first.back.t));

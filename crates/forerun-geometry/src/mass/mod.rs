@@ -62,7 +62,7 @@ impl Shape {
             Shape::Capsule(c) => Solid::capsule(c.half_height.into(), c.radius.into()),
             Shape::Cylinder(c) => Solid::cylinder(c.half_height.into(), c.radius.into()),
             Shape::Hull(hull) => Solid::within(hull.triangles().map(|t| t.map(|v| v.as_dvec3()))),
-            Shape::Mesh(mesh) if mesh.closed => {
+            Shape::Mesh(mesh) if mesh.has_inside() => {
                 Solid::within((0..mesh.triangles.len()).map(|t| mesh.corners(t).map(|v| v.as_dvec3())))
             }
             Shape::HalfSpace | Shape::Mesh(_) => Solid::NOTHING,

@@ -1,8 +1,11 @@
 //! Baking: from triangles to a field, once for each mesh.
 //!
-//! Promise: the same triangles give the same field, byte for byte, on every target.
+//! Promise: the same triangles give the same field, byte for byte, on every target and for any number of threads.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::Field;
 use super::nearest::{Nearest, Skin};
@@ -19,32 +22,24 @@ const BLOCK: usize = 4;
 /// Nodes nearer to the surface than this many cells are exact. Farther ones only serve to cull.
 const EXACT_CELLS: f32 = 4.0;
 
+/// Told how much of the baking is done and how much there is in all, by the threads that do it: `done` is a different number
+/// each time, but a smaller one may come after a larger one.
+pub type BakeProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
 /// The field of a closed surface: exact distances to the triangles at the nodes near it, signs by pseudo-normals.
-pub(crate) fn bake(skin: Skin<'_>) -> Field {
+/// `cell`: wished size; none for one that suits the thickness.
+pub(crate) fn bake(skin: Skin<'_>, cell: Option<f32>, progress: BakeProgress<'_>) -> Field {
     let bounds = skin.mesh.bounds();
     let extent = bounds.max - bounds.min;
-    let wished = cell_size(extent, skin.mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
+    let wished = cell.unwrap_or(skin.mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
     // Nodes on all six sides of the box around the mesh: the edges of boxes and plates are met exactly.
-    let cells = cells_along(extent, wished);
+    let cells = cells_along(extent, cell_size(extent, wished));
     let cell = extent / Vec3::from_array(cells.map(|n| n as f32));
     let origin = bounds.min - cell * PADDING as f32;
     let size = cells.map(|n| n as usize + 2 * PADDING + 1);
-    let distances = vec![f32::NAN; size.iter().product()];
-    let mut baker = Baker { skin, origin, cell, size, distances, guess: None };
-    let blocks = baker.blocks();
-    for block in &blocks {
-        for node in block.corners() {
-            baker.measure(node);
-        }
-    }
-    let (far, near): (Vec<Block>, Vec<Block>) = blocks.iter().partition(|block| baker.is_far(block));
-    for block in near {
-        block.nodes().for_each(|node| baker.measure(node));
-    }
-    for block in far {
-        block.nodes().for_each(|node| baker.interpolate(&block, node));
-    }
-    Field::from_distances(origin, cell, size, &baker.distances)
+    let baker = Baker { skin, origin, cell, size };
+    let distances = baker.distances(progress);
+    Field::from_distances(origin, cell, size, &distances)
 }
 
 /// A field in the making.
@@ -52,90 +47,112 @@ struct Baker<'a> {
     skin: Skin<'a>,
     origin: Vec3,
     cell: Vec3,
+    /// Number of nodes along x, y and z.
     size: [usize; 3],
-    /// Distances so far; not a number where not known yet.
+}
+
+/// Distances at the corners of all blocks.
+struct Corners {
+    /// Number of corners along x, y and z: one more than blocks.
+    size: [usize; 3],
     distances: Vec<f32>,
-    /// The last answer: the next node is close by.
-    guess: Option<Nearest>,
-}
-
-/// The nodes from `low` to `high`, both included.
-#[derive(Clone, Copy)]
-struct Block {
-    low: [usize; 3],
-    high: [usize; 3],
-}
-
-impl Block {
-    fn corners(self) -> impl Iterator<Item = [usize; 3]> {
-        (0..8).map(move |k| {
-            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] })
-        })
-    }
-
-    fn nodes(self) -> impl Iterator<Item = [usize; 3]> {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.low[axis]..=self.high[axis]);
-        z.flat_map(move |z| {
-            let x = x.clone();
-            y.clone().flat_map(move |y| x.clone().map(move |x| [x, y, z]))
-        })
-    }
 }
 
 impl Baker<'_> {
-    /// All blocks; neighbours share the nodes between them.
-    fn blocks(&self) -> Vec<Block> {
-        let [nx, ny, nz] = self.size.map(|n| (0..n - 1).step_by(BLOCK));
-        let mut blocks = Vec::new();
-        for z in nz {
-            for y in ny.clone() {
-                for x in nx.clone() {
-                    let low = [x, y, z];
-                    let high = [0, 1, 2].map(|axis| (low[axis] + BLOCK).min(self.size[axis] - 1));
-                    blocks.push(Block { low, high });
+    /// Distances at all nodes, x fastest. Metres.
+    fn distances(&self, progress: BakeProgress<'_>) -> Vec<f32> {
+        let corners = self.corners();
+        let [nx, ny, nz] = self.size;
+        let mut distances = vec![0.0; nx * ny * nz];
+        let rows = ny.div_ceil(BLOCK);
+        let (done, total) = (AtomicUsize::new(0), nz.div_ceil(BLOCK) * rows);
+        distances.par_chunks_mut(nx * ny * BLOCK).enumerate().for_each(|(slab, nodes)| {
+            let mut guess = None;
+            for row in 0..rows {
+                for block in 0..nx.div_ceil(BLOCK) {
+                    self.fill([block, row, slab], &corners, nodes, &mut guess);
+                }
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+            }
+        });
+        distances
+    }
+
+    /// Measures the corners of all blocks. The last ones are where the grid ends.
+    fn corners(&self) -> Corners {
+        let size = self.size.map(|n| (n - 1).div_ceil(BLOCK) + 1);
+        let mut distances = vec![0.0; size.iter().product()];
+        distances.par_chunks_mut(size[0]).enumerate().for_each(|(row, distances)| {
+            let mut guess = None;
+            for (x, distance) in distances.iter_mut().enumerate() {
+                let corner = [x, row % size[1], row / size[1]];
+                let node = [0, 1, 2].map(|axis| (corner[axis] * BLOCK).min(self.size[axis] - 1));
+                *distance = self.measure(node, &mut guess);
+            }
+        });
+        Corners { size, distances }
+    }
+
+    /// Fills in the nodes of a block, but for those on its high faces that are the next block's, into those of its slab.
+    fn fill(&self, block: [usize; 3], corners: &Corners, slab: &mut [f32], guess: &mut Option<Nearest>) {
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let low = block[axis] * BLOCK;
+            low..(low + BLOCK).min(self.size[axis])
+        });
+        // The last nodes may be by themselves: then they are the high face of the block before.
+        let cells = [0, 1, 2].map(|axis| block[axis].min(corners.size[axis] - 2));
+        let values = corners.of(cells);
+        let far = self.is_far(&values);
+        for z in z {
+            for y in y.clone() {
+                for x in x.clone() {
+                    let node = [x, y, z];
+                    let index = (z - block[2] * BLOCK) * self.size[0] * self.size[1] + y * self.size[0] + x;
+                    slab[index] =
+                        if far { self.interpolate(cells, &values, node) } else { self.measure(node, guess) };
                 }
             }
         }
-        blocks
     }
 
-    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
-        (z * self.size[1] + y) * self.size[0] + x
-    }
-
-    /// Whether no node of a block, its corners known, can be so near that it must be exact.
-    fn is_far(&self, block: &Block) -> bool {
+    /// Whether no node of a block with these distances at its corners can be so near that it must be exact.
+    fn is_far(&self, corners: &[f32; 8]) -> bool {
         let half_diagonal = 0.5 * BLOCK as f32 * self.cell.length();
         let enough = EXACT_CELLS * self.cell.max_element() + half_diagonal;
-        block.corners().all(|node| self.distances[self.index(node)].abs() > enough)
+        corners.iter().all(|distance| distance.abs() > enough)
     }
 
-    fn measure(&mut self, node: [usize; 3]) {
-        let index = self.index(node);
-        if !self.distances[index].is_nan() {
-            return;
-        }
+    fn measure(&self, node: [usize; 3], guess: &mut Option<Nearest>) -> f32 {
         let at = DVec3::from_array(node.map(|i| i as f64)) * self.cell.as_dvec3() + self.origin.as_dvec3();
-        let nearest = self.skin.nearest(at, self.guess.as_ref());
-        self.distances[index] = self.skin.signed(at, &nearest).distance as f32;
-        self.guess = Some(nearest);
+        let nearest = self.skin.nearest(at, guess.as_ref());
+        *guess = Some(nearest);
+        self.skin.signed(at, &nearest).distance as f32
     }
 
-    /// Trilinear interpolation from the corners of the block.
-    fn interpolate(&mut self, block: &Block, node: [usize; 3]) {
-        let index = self.index(node);
-        if !self.distances[index].is_nan() {
-            return;
-        }
-        let part = [0, 1, 2]
-            .map(|axis| (node[axis] - block.low[axis]) as f32 / (block.high[axis] - block.low[axis]) as f32);
+    /// Trilinear interpolation from the corners of a block.
+    fn interpolate(&self, block: [usize; 3], corners: &[f32; 8], node: [usize; 3]) -> f32 {
+        let part = [0, 1, 2].map(|axis| {
+            let low = block[axis] * BLOCK;
+            let high = (low + BLOCK).min(self.size[axis] - 1);
+            (node[axis] - low) as f32 / (high - low) as f32
+        });
         let mut sum = 0.0;
-        for (k, corner) in block.corners().enumerate() {
+        for (k, distance) in corners.iter().enumerate() {
             let weights =
                 [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { 1.0 - part[axis] } else { part[axis] });
-            sum += weights[0] * weights[1] * weights[2] * self.distances[self.index(corner)];
+            sum += weights[0] * weights[1] * weights[2] * distance;
         }
-        self.distances[index] = sum;
+        sum
+    }
+}
+
+impl Corners {
+    /// Distances at the corners of a block: x changes fastest, then y, then z.
+    fn of(&self, [x, y, z]: [usize; 3]) -> [f32; 8] {
+        std::array::from_fn(|k| {
+            let [x, y, z] = [x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)];
+            self.distances[(z * self.size[1] + y) * self.size[0] + x]
+        })
     }
 }
 

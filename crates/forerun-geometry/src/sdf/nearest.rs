@@ -33,6 +33,13 @@ pub(crate) struct Nearest {
     feature: Feature,
 }
 
+impl Nearest {
+    /// Of equally near triangles the first is meant, whatever the guess was.
+    fn rank(&self) -> (f64, usize) {
+        (self.distance_squared, self.triangle)
+    }
+}
+
 /// A surface point seen from a point, with its side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Signed {
@@ -57,7 +64,7 @@ impl<'a> Skin<'a> {
         let distance = |bounds: &Aabb| Some(distance_squared(bounds, point));
         let visit = |triangle: u32| {
             let candidate = self.nearest_on(triangle as usize, point);
-            if candidate.distance_squared < best.distance_squared {
+            if candidate.rank() < best.rank() {
                 best = candidate;
             }
             best.distance_squared

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
+
 use super::MeshError;
 use crate::Vec3;
 
@@ -142,4 +144,16 @@ pub(super) fn check_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(
         Some(run) => Err(MeshError::Twisted { edges: twisted.len(), first: ends(run) }),
         None => Ok(()),
     }
+}
+
+/// Signed volume (m³, by the divergence theorem) and area (m²).
+pub(super) fn volume_and_area(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (f64, f64) {
+    let origin = vertices[triangles[0][0] as usize].as_dvec3();
+    let (mut volume, mut area) = (0.0, 0.0);
+    for triangle in triangles {
+        let [a, b, c]: [DVec3; 3] = triangle.map(|i| vertices[i as usize].as_dvec3() - origin);
+        volume += a.dot(b.cross(c)) / 6.0;
+        area += (b - a).cross(c - a).length() / 2.0;
+    }
+    (volume, area)
 }
