@@ -7,7 +7,7 @@ use crate::contact::Placed;
 use crate::sdf::Samples;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
-use crate::shape::Mesh;
+use crate::shape::{Enclosure, Mesh};
 use crate::{Pose, Shape, Vec3};
 
 use super::points::{self, Region, RoundPoint};
@@ -69,8 +69,11 @@ pub(super) fn between<'a>(first: &Placed<'a>, second: &Placed<'a>, margin: f32) 
 fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f32) -> Option<Direction<'a>> {
     let to_field = field.pose.inverse() * sampled.pose;
     let surface = surface_of(field.shape, 2.0 * sampled.shape.half_thickness())?;
+    // The triangles of a mended mesh do not tell its sides.
     let (skin, blur) = match field.shape {
-        Shape::Mesh(mesh) => (Some(Skin::of(mesh)), mesh.collider().blur),
+        Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
+            (Some(Skin::of(mesh)), mesh.collider().blur)
+        }
         _ => (None, 0.0),
     };
     let points = match (sampled.shape, field.shape) {
