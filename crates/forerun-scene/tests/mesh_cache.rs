@@ -111,7 +111,9 @@ fn scenes_use_it_and_tell_what_looks_odd() {
     std::fs::create_dir_all(&folder).unwrap();
     let list = ring();
     let mut obj = String::new();
-    list.vertices.iter().for_each(|v| obj += &format!("v {} {} {}\n", v.x * 1000.0, v.y * 1000.0, v.z * 1000.0));
+    list.vertices
+        .iter()
+        .for_each(|v| obj += &format!("v {} {} {}\n", v.x * 1000.0, v.y * 1000.0, v.z * 1000.0));
     list.triangles.iter().for_each(|t| obj += &format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1));
     std::fs::write(folder.join("ring.obj"), obj).unwrap();
     let noted = Arc::new(Noted::default());
@@ -121,8 +123,10 @@ fn scenes_use_it_and_tell_what_looks_odd() {
         );
         let mut scene =
             Scene::parse(&text, Format::Toml, &folder.join("s.toml").display().to_string()).unwrap();
-        scene.baking =
-            MeshBaking { cache: Some(MeshCache::in_folder(folder.join("fields"))), watch: Some(noted.clone()) };
+        scene.baking = MeshBaking {
+            cache: Some(MeshCache::in_folder(folder.join("fields"))),
+            watch: Some(noted.clone()),
+        };
         scene.bodies().unwrap()
     };
     let bodies = open("scale = 0.001");
