@@ -92,6 +92,27 @@ impl Field {
         self.cell.max_element()
     }
 
+    /// Distances between neighbouring nodes along x, y and z. Metres.
+    pub(super) fn cell_size(&self) -> Vec3 {
+        self.cell
+    }
+
+    /// Calls `visit` with the lowest corner of each cell and the distances at its corners: x changes fastest, then y, then z.
+    pub(super) fn each_cell(&self, mut visit: impl FnMut(Vec3, [f32; 8])) {
+        let [nx, ny, nz] = self.size;
+        let (row, layer) = (nx, nx * ny);
+        for z in 0..nz - 1 {
+            for y in 0..ny - 1 {
+                for x in 0..nx - 1 {
+                    let base = z * layer + y * row + x;
+                    let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
+                    let distances = corners.map(|k| f32::from(self.nodes[base + k]) * self.scale);
+                    visit(self.origin + Vec3::new(x as f32, y as f32, z as f32) * self.cell, distances);
+                }
+            }
+        }
+    }
+
     /// The box that the grid covers.
     #[must_use]
     pub fn bounds(&self) -> Aabb {

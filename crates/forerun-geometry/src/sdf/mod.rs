@@ -5,22 +5,26 @@
 //! see [`crate::contact`].
 
 use crate::Vec3;
-use crate::shape::Mesh;
+use crate::shape::{Enclosure, Mesh};
 
 pub(crate) mod bake;
 mod field;
 pub(crate) mod kept;
 pub(crate) mod lanes;
+pub(crate) mod mend;
+pub(crate) mod moments;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
 pub(crate) mod pseudo_normals;
 mod samples;
+pub(crate) mod winding;
 
 pub use bake::BakeProgress;
 pub use field::Field;
 pub use kept::{BakeKey, KeptError};
 pub use samples::{Sample, Samples};
 
+use moments::Moments;
 use pseudo_normals::{EdgeKind, PseudoNormals};
 
 /// All that contact needs to know of a mesh beyond its triangles, computed once. The default finds nothing.
@@ -32,11 +36,19 @@ pub struct MeshCollider {
     pub samples: Samples,
     /// Distance from the origin to the farthest vertex. Metres.
     pub radius: f32,
+    /// Of what is inside, where the triangles do not say it.
+    pub(crate) moments: Option<Moments>,
+    /// How far off its surface the field sees points of its own sharp edges and corners: none where all is smooth. Metres.
+    ///
+    /// Between its nodes a field cuts edges off that are askew to its grid. Contact asks the triangles there.
+    pub(crate) blur: f32,
     normals: PseudoNormals,
 }
 
 /// Most points along edges; longer spacings where there would be more.
 const EDGE_SAMPLES_MAX: f32 = 16_384.0;
+/// Surfaces are smooth whose field is off by less than this part of a cell.
+const BLUR_PART: f32 = 1.0 / 6.0;
 /// Points along an edge of middling length of an open mesh, whose thickness says nothing.
 const OPEN_EDGE_PARTS: f32 = 4.0;
 
@@ -45,9 +57,17 @@ impl MeshCollider {
     ///
     /// An open mesh has no field: contact goes to its triangles, and only their front collides.
     pub(crate) fn new(mesh: &Mesh, normals: PseudoNormals, field: Option<Field>) -> MeshCollider {
-        let samples = Samples::new(sample_points(mesh, &normals));
+        let mut points = sample_points(mesh, &normals);
+        let mut moments = None;
+        if let (Enclosure::Mended, Some(field)) = (mesh.enclosure, &field) {
+            // What is inside of other parts touches nothing.
+            points.retain(|sample| field.distance_and_gradient(sample.point).0 > -0.5 * field.cell());
+            moments = Some(Moments::of(field));
+        }
+        let samples = Samples::new(points);
         let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
-        MeshCollider { field, samples, radius, normals }
+        let blur = field.as_ref().map_or(0.0, |field| blur(field, &samples));
+        MeshCollider { field, samples, radius, moments, blur, normals }
     }
 
     /// Memory that it takes.
@@ -55,6 +75,12 @@ impl MeshCollider {
     pub fn bytes(&self) -> usize {
         self.field.as_ref().map_or(0, Field::bytes) + self.samples.bytes() + self.normals.bytes()
     }
+}
+
+/// [`MeshCollider::blur`]: how far off the points of the surface seem to be, where that is too much to be left alone.
+fn blur(field: &Field, samples: &Samples) -> f32 {
+    let off = samples.iter().fold(0.0_f32, |off, s| off.max(field.distance_and_gradient(s.point).0));
+    if off > BLUR_PART * field.cell() { off } else { 0.0 }
 }
 
 /// The vertices, and points along ridges and boundaries no further apart than the thickness of the mesh (of an open

@@ -5,14 +5,17 @@
 use super::mesh::Mesh;
 use super::mesh_report::{Enclosure, MeshError, MeshRepairs};
 use super::mesh_topology::{
-    check_edges, drop_degenerate, drop_unused, recut_slivers, volume_and_area, weld_equal,
+    check_edges, covers, crowded_edges, drop_degenerate, drop_unused, recut_slivers, turn_shells,
+    turn_to_neighbours, volume_and_area, weld_equal,
 };
 use crate::Vec3;
 use crate::sdf::MeshCollider;
-use crate::sdf::bake::{BakeProgress, bake};
+use crate::sdf::bake::{Bounding, Grid, bake};
 use crate::sdf::kept::{BakeKey, Found, Kept, KeptError};
+use crate::sdf::mend::{Covers, Verdict, survey};
 use crate::sdf::nearest::Skin;
 use crate::sdf::pseudo_normals::PseudoNormals;
+use crate::sdf::{BakeProgress, Field};
 
 /// How a mesh is to be made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,6 +49,10 @@ pub struct MeshDraft {
     options: MeshOptions,
     /// Why there is no inside.
     fault: Option<MeshError>,
+    /// The first fault of its edges, if they have any.
+    edges: Option<MeshError>,
+    /// What covers holes.
+    covers: Covers,
 }
 
 impl MeshDraft {
@@ -64,7 +71,8 @@ impl MeshDraft {
             return Err(MeshError::Cell { cell });
         }
         let (vertices, triangles, repairs) = clean(vertices, triangles)?;
-        let mut draft = MeshDraft { vertices, triangles, repairs, options, fault: None };
+        let (fault, edges, covers) = (None, None, Covers::default());
+        let mut draft = MeshDraft { vertices, triangles, repairs, options, fault, edges, covers };
         if let Err(fault) = draft.face_outwards() {
             if options.inside == Inside::Needed {
                 return Err(fault);
@@ -74,19 +82,45 @@ impl MeshDraft {
         Ok(draft)
     }
 
-    /// Turns triangles that all face inwards.
+    /// Turns triangles to face outwards and covers holes, as far as an inside may be got that way.
     fn face_outwards(&mut self) -> Result<(), MeshError> {
-        check_edges(&self.vertices, &self.triangles)?;
-        let (volume, area) = volume_and_area(&self.vertices, &self.triangles);
+        let edges = check_edges(&self.vertices, &self.triangles);
+        if edges.is_err() && self.options.inside == Inside::Optional {
+            return edges;
+        }
+        let (flipped, parts) = turn_to_neighbours(&self.vertices, &mut self.triangles);
+        self.repairs.flipped_triangles = flipped;
+        if edges.is_err() {
+            self.cover();
+        }
+        let (volume, area) = self.volume_and_area();
         // Of a solid of size L the volume is known to about 1e-7 L³ and the area is about L²: less than that is nothing.
         if volume.abs() <= 1e-6 * area * area.sqrt() {
-            return Err(MeshError::NoVolume { volume });
+            return edges.and(Err(MeshError::NoVolume { volume }));
         }
         if volume < 0.0 {
-            self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+            self.triangles.iter_mut().chain(&mut self.covers.triangles).for_each(|t| t.swap(1, 2));
             self.repairs.turned = true;
         }
+        self.repairs.flipped_triangles += turn_shells(&self.vertices, &mut self.triangles, &parts);
+        self.cover();
+        self.edges = edges.err();
         Ok(())
+    }
+
+    fn cover(&mut self) {
+        self.covers = covers(&self.vertices, &self.triangles);
+        self.repairs.crowded_edges = crowded_edges(&self.triangles);
+        self.repairs.hole_edges = self.covers.triangles.len() as u32;
+        self.repairs.first_hole =
+            self.covers.triangles.first().map(|t| [t[0], t[1]].map(|v| self.vertices[v as usize]));
+    }
+
+    /// Signed volume (m³) and area (m²), covers of holes included.
+    fn volume_and_area(&self) -> (f64, f64) {
+        let vertices: Vec<Vec3> = self.vertices.iter().chain(&self.covers.apexes).copied().collect();
+        let triangles: Vec<[u32; 3]> = self.triangles.iter().chain(&self.covers.triangles).copied().collect();
+        volume_and_area(&vertices, &triangles)
     }
 
     /// What the baked field depends on, as a name: triangles, options, and the version of the baker.
@@ -102,14 +136,40 @@ impl MeshDraft {
     pub fn bake(&self, progress: BakeProgress<'_>) -> Result<Mesh, MeshError> {
         let mut mesh = self.unbaked();
         let normals = PseudoNormals::new(&mesh);
-        let mut field = None;
-        if self.fault.is_none() {
-            mesh.enclosure = Enclosure::Closed;
-            mesh.half_thickness = mesh.measure_half_thickness();
-            field = Some(bake(Skin { mesh: &mesh, normals: &normals }, self.options.cell, progress));
-        }
+        let field = if self.fault.is_none() { self.bake_field(&mut mesh, &normals, progress)? } else { None };
         mesh.collider = MeshCollider::new(&mesh, normals, field);
         Ok(mesh)
+    }
+
+    /// The field of a mesh, and what the mesh turns out to be. No field if there is no inside, and none is needed.
+    fn bake_field(
+        &self,
+        mesh: &mut Mesh,
+        normals: &PseudoNormals,
+        progress: BakeProgress<'_>,
+    ) -> Result<Option<Field>, MeshError> {
+        mesh.half_thickness = mesh.measure_half_thickness();
+        let grid = Grid::around(mesh, self.options.cell);
+        match survey(mesh, &self.covers, grid.cell().into()) {
+            Verdict::Sound => {
+                mesh.enclosure = Enclosure::Closed;
+                let surface = Bounding::Exactly(Skin { mesh, normals });
+                Ok(Some(bake(grid, &surface, progress)))
+            }
+            Verdict::Mended(mended) => {
+                mesh.enclosure = Enclosure::Mended;
+                mended.found.note_in(&mut mesh.repairs);
+                Ok(Some(bake(grid, &Bounding::mended(&mended), progress)))
+            }
+            Verdict::Hopeless if self.options.inside == Inside::Needed => {
+                let (volume, _) = self.volume_and_area();
+                Err(self.edges.clone().unwrap_or(MeshError::NoVolume { volume }))
+            }
+            Verdict::Hopeless => {
+                mesh.half_thickness = f32::INFINITY;
+                Ok(None)
+            }
+        }
     }
 
     /// Makes the mesh from what [`Mesh::baked_bytes`] gave for one of an equal draft.

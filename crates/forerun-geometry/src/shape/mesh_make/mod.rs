@@ -15,12 +15,14 @@ mod gear;
 mod jack;
 mod knot;
 mod letter;
+mod link;
 mod mug;
 mod outline;
 mod revolution;
 mod surface;
 mod surface_net;
 mod terrain;
+mod thread;
 
 pub use ball::{Ball, ball};
 pub use bowl::Bowl;
@@ -29,9 +31,11 @@ pub use gear::Gear;
 pub use jack::Jack;
 pub use knot::TorusKnot;
 pub use letter::Letter;
+pub use link::Link;
 pub use mug::Mug;
 pub use revolution::{Torus, ring, torus};
 pub use terrain::Terrain;
+pub use thread::{Bolt, Grip, Nut, Thread};
 
 /// Most segments or sides that a maker accepts.
 const FINEST: u32 = 1024;
