@@ -96,6 +96,12 @@ letter = { letter = "R", height = 1.0, depth = 0.25 }
 chair = { width = 0.5, depth = 0.45, seat_height = 0.46, height = 0.95, bar = 0.04 }
 [meshes.jack]
 jack = { reach = 0.5, arm_radius = 0.1, knob_radius = 0.11, cells = 18 }
+[meshes.link]
+link = { radius = 0.3, straight = 0.2, tube_radius = 0.08, bend_parts = 6, sides = 6 }
+[meshes.bolt]
+bolt = { thread = { radius = 0.2, pitch = 0.1 }, length = 0.5, head_radius = 0.35, head_height = 0.2, head = "hexagonal", segments = 24 }
+[meshes.nut]
+nut = { thread = { radius = 0.2, pitch = 0.1 }, clearance = 0.01, height = 0.3, outer_radius = 0.36, outside = "round", segments = 24 }
 [meshes.terrain]
 terrain = { half_width = 5.0, height = 1.0, hill = 4.0, cells = 10, seed = 7 }
 open = true

@@ -1,7 +1,7 @@
 //! Meshes made by a formula: how a scene file writes the parameters of each maker.
 
 use forerun_geometry::shape::mesh_make::{
-    Ball, Bowl, Chair, Gear, Jack, Letter, Mug, Terrain, Torus, TorusKnot,
+    Ball, Bolt, Bowl, Chair, Gear, Grip, Jack, Letter, Link, Mug, Nut, Terrain, Thread, Torus, TorusKnot,
 };
 use forerun_geometry::shape::{ShapeError, TriangleList};
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ macro_rules! formulas {
 
         impl From<$entry> for $maker {
             fn from(entry: $entry) -> $maker {
-                $maker { $($field: entry.$field,)+ }
+                $maker { $($field: entry.$field.into(),)+ }
             }
         }
 
@@ -170,5 +170,86 @@ formulas! {
         cells: u32,
         /// Another number, another terrain.
         seed: u32,
+    }
+
+    /// A link of a chain in the plane y = 0, long along x.
+    LinkEntry is Link {
+        /// Radius of the bends, to the middle of the tube. Metres, above `tube_radius`.
+        radius: f32,
+        /// Length of each straight. Metres, 0 or more.
+        straight: f32,
+        /// Radius of the tube. Metres, above 0.
+        tube_radius: f32,
+        /// Parts that each bend is cut into. 2 to 512.
+        bend_parts: u32,
+        /// Points round the tube. 3 to 1024.
+        sides: u32,
+    }
+
+    /// A bolt about the y axis: its shank from y = -`length` to 0, then the head.
+    BoltEntry is Bolt {
+        /// The thread, all along the shank.
+        thread: ThreadEntry,
+        /// Length of the shank. Metres, at least a pitch.
+        length: f32,
+        /// From the axis to the flat of the head. Metres, above the radius of the thread.
+        head_radius: f32,
+        /// Height of the head. Metres, above 0.
+        head_height: f32,
+        /// What the head looks like from above.
+        head: GripEntry,
+        /// Columns of points round the axis: a multiple of 6 from 12 to 384.
+        segments: u32,
+    }
+
+    /// A nut about the y axis, centred on the origin.
+    NutEntry is Nut {
+        /// The thread of the bolt that it is for.
+        thread: ThreadEntry,
+        /// How much larger the radius of its own thread is at every height. Metres, 0 or more.
+        clearance: f32,
+        /// Height. Metres, at least a pitch.
+        height: f32,
+        /// From the axis to the flat of the outside. Metres, above the radius of the thread with clearance and a tenth of the pitch.
+        outer_radius: f32,
+        /// What the outside looks like from above.
+        outside: GripEntry,
+        /// Columns of points round the axis: a multiple of 6 from 12 to 384.
+        segments: u32,
+    }
+}
+
+/// The thread of a bolt.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ThreadEntry {
+    /// From the axis to the crest. Metres.
+    pub radius: f32,
+    /// How far a full turn goes along the axis. Metres, above 0 and at most `radius`.
+    pub pitch: f32,
+}
+
+impl From<ThreadEntry> for Thread {
+    fn from(ThreadEntry { radius, pitch }: ThreadEntry) -> Thread {
+        Thread { radius, pitch }
+    }
+}
+
+/// What a spanner grips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GripEntry {
+    /// A regular hexagon.
+    Hexagonal,
+    /// A circle.
+    Round,
+}
+
+impl From<GripEntry> for Grip {
+    fn from(entry: GripEntry) -> Grip {
+        match entry {
+            GripEntry::Hexagonal => Grip::Hexagonal,
+            GripEntry::Round => Grip::Round,
+        }
     }
 }

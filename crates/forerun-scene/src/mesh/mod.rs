@@ -14,8 +14,8 @@ mod formula;
 mod source;
 
 pub use formula::{
-    BallEntry, BowlEntry, ChairEntry, GearEntry, JackEntry, LetterEntry, MugEntry, TerrainEntry, TorusEntry,
-    TorusKnotEntry,
+    BallEntry, BoltEntry, BowlEntry, ChairEntry, GearEntry, GripEntry, JackEntry, LetterEntry, LinkEntry,
+    MugEntry, NutEntry, TerrainEntry, ThreadEntry, TorusEntry, TorusKnotEntry,
 };
 pub use source::MeshSource;
 

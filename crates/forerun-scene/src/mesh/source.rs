@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::formula::{
-    BallEntry, BowlEntry, ChairEntry, Formula, GearEntry, JackEntry, LetterEntry, MugEntry, TerrainEntry,
-    TorusEntry, TorusKnotEntry,
+    BallEntry, BoltEntry, BowlEntry, ChairEntry, Formula, GearEntry, JackEntry, LetterEntry, LinkEntry,
+    MugEntry, NutEntry, TerrainEntry, TorusEntry, TorusKnotEntry,
 };
 use super::{MeshEntry, UpEntry};
 use crate::write::inline;
@@ -114,6 +114,12 @@ sources! {
     chair: Chair(ChairEntry),
     /// The toy with six knobs.
     jack: Jack(JackEntry),
+    /// A link of a chain.
+    link: Link(LinkEntry),
+    /// A bolt with a thread.
+    bolt: Bolt(BoltEntry),
+    /// A nut with a thread.
+    nut: Nut(NutEntry),
     /// Hills: an open mesh.
     terrain: Terrain(TerrainEntry),
 }
