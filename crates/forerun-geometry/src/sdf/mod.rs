@@ -8,6 +8,7 @@ use crate::Vec3;
 use crate::shape::{Enclosure, Mesh};
 
 pub(crate) mod bake;
+mod crossing;
 mod field;
 pub(crate) mod kept;
 pub(crate) mod lanes;
