@@ -14,6 +14,7 @@ mod directions;
 mod look_up;
 mod points;
 mod reduce;
+mod sharp;
 
 /// Points this near to the other surface count however they move; points farther away only if they will be as near as
 /// this at the end of the step. Metres.

@@ -7,7 +7,7 @@ use crate::contact::Placed;
 use crate::sdf::Samples;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
-use crate::shape::Mesh;
+use crate::shape::{Enclosure, Mesh};
 use crate::{Pose, Shape, Vec3};
 
 use super::points::{self, Region, RoundPoint};
@@ -23,6 +23,8 @@ pub(super) struct Direction<'a> {
     pub(super) surface: Surface<'a>,
     /// The triangles of the surface if it is a mesh.
     pub(super) skin: Option<Skin<'a>>,
+    /// By how much the surface may take edges and corners to be farther away than they are. Metres.
+    pub(super) blur: f32,
     /// From the frame of the points to that of the field: rotation.
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
@@ -67,7 +69,13 @@ pub(super) fn between<'a>(first: &Placed<'a>, second: &Placed<'a>, margin: f32) 
 fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f32) -> Option<Direction<'a>> {
     let to_field = field.pose.inverse() * sampled.pose;
     let surface = surface_of(field.shape, 2.0 * sampled.shape.half_thickness())?;
-    let skin = if let Shape::Mesh(mesh) = field.shape { Some(Skin::of(mesh)) } else { None };
+    // The triangles of a mended mesh do not tell its sides.
+    let (skin, blur) = match field.shape {
+        Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
+            (Some(Skin::of(mesh)), mesh.collider().blur)
+        }
+        _ => (None, 0.0),
+    };
     let points = match (sampled.shape, field.shape) {
         (Shape::Mesh(mesh), _) => Points::Mesh(&mesh.collider().samples),
         (shape, Shape::Mesh(mesh)) => {
@@ -90,6 +98,7 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         points,
         surface,
         skin,
+        blur,
         axes: to_field.axes(),
         origin: to_field.position,
         field_pose: field.pose,
@@ -123,6 +132,6 @@ fn surface_of(shape: &Shape, depth_limit: f32) -> Option<Surface<'_>> {
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.
 fn region_of(mesh: &Mesh, to_primitive: &Pose, margin: f32) -> Region {
     let radius = mesh.collider().radius;
-    let spacing = if mesh.closed { 2.0 * mesh.half_thickness() } else { radius };
+    let spacing = if mesh.has_inside() { 2.0 * mesh.half_thickness() } else { radius };
     Region { centre: to_primitive.position, radius: radius + margin, spacing }
 }

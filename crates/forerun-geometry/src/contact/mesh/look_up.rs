@@ -84,7 +84,7 @@ impl Direction<'_> {
     #[inline(always)]
     fn meet(&self, eight: &Eight, inset: f32, asked: u32) -> Answers {
         let back = eight.outwards.scaled(Lanes::splat(inset));
-        let (distance, gradient) = self.surface.look_up(eight.points.minus(back));
+        let (distance, gradient) = self.answer(eight.points.minus(back), asked, inset);
         let normal = gradient.normalized();
         let distance = distance + normal.dot(back);
         let near = asked & distance.below(Lanes::splat(self.margin)).bits();
@@ -114,7 +114,8 @@ impl Direction<'_> {
             let flat = matches!(self.surface, Surface::Field(_)) && eight.facing_max.0[i] <= FLAT_MAX;
             let normal = if flat { -eight.outwards.lane(i) } else { answers.normal.lane(i) };
             let candidate = self.candidate(ball, normal, answers.distance.0[i], index);
-            candidates.push(Candidate { rough: answers.inset == 0.0 && !flat, ..candidate });
+            candidates
+                .push(Candidate { rough: answers.inset == 0.0 && !flat && self.blur == 0.0, ..candidate });
         }
     }
 
@@ -146,10 +147,16 @@ impl Direction<'_> {
     /// The bits of the balls (in the field's frame) that may hold points that count.
     #[inline(always)]
     fn near(&self, centres: Lanes3, radii: Lanes) -> u32 {
+        let near = self.reach(centres, radii) + Lanes::splat(self.blur);
+        (self.surface.lower_bound(centres) - radii).below(near).bits()
+    }
+
+    /// How near to the surface points of balls must be to count. Metres.
+    #[inline(always)]
+    pub(super) fn reach(&self, centres: Lanes3, radii: Lanes) -> Lanes {
         // No point of a ball moves further than its centre, and what turning about the centre adds.
         let motion = self.motion_at(centres).length() + radii * self.spin.length();
-        let near = (motion + Lanes::splat(self.near)).min(Lanes::splat(self.margin));
-        (self.surface.lower_bound(centres) - radii).below(near).bits()
+        (motion + Lanes::splat(self.near)).min(Lanes::splat(self.margin))
     }
 
     #[inline(always)]
