@@ -3,8 +3,9 @@
 use glam::Mat3;
 
 use super::{MOTION_AHEAD, NEAR};
-use crate::contact::Placed;
+use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
+use crate::sdf::lanes::Lanes3;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
 use crate::shape::{Enclosure, Mesh};
@@ -33,10 +34,12 @@ pub(super) struct Direction<'a> {
     pub(super) field_pose: Pose,
     /// Rotation of the field in the world.
     pub(super) field_axes: Mat3,
-    /// A point x of the field's frame is about to move by `drift + spin × x`, with some to spare. Metres.
-    pub(super) drift: Vec3,
-    /// See `drift`. Radians.
-    pub(super) spin: Vec3,
+    /// How the points are about to move.
+    pub(super) goes: Going,
+    /// How the field is.
+    pub(super) comes: Going,
+    /// What moves by x against the other comes nearer to it than the tangents say by up to this times x²: surfaces are bent. 1/m
+    pub(super) bend: f32,
     /// 1 if the field is the first shape's: its gradient then points to the second; -1 otherwise.
     pub(super) sign: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
@@ -45,6 +48,31 @@ pub(super) struct Direction<'a> {
     pub(super) near: f32,
     /// Points farther than this do not count. Metres.
     pub(super) margin: f32,
+}
+
+/// A motion in the field's frame, with some to spare: a point x is about to move by `drift + spin × x`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Going {
+    /// Metres.
+    drift: Vec3,
+    /// Radians.
+    pub(super) spin: Vec3,
+}
+
+impl Going {
+    fn new(motion: &Motion, field: &Pose) -> Going {
+        let into_field = |v: Vec3| field.inverse_transform_vector(v) * MOTION_AHEAD;
+        let drift = motion.linear + motion.angular.cross(field.position - motion.about);
+        Going { drift: into_field(drift), spin: into_field(motion.angular) }
+    }
+
+    /// The motion of points of the field's frame. Metres.
+    #[inline(always)]
+    pub(super) fn at(&self, points: Lanes3) -> Lanes3 {
+        let (w, p) = (self.spin, points);
+        let spun = Lanes3 { x: p.z * w.y - p.y * w.z, y: p.x * w.z - p.z * w.x, z: p.y * w.x - p.x * w.y };
+        spun.plus(Lanes3::splat(self.drift))
+    }
 }
 
 /// Points of a surface.
@@ -88,12 +116,6 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         }
         _ => return None,
     };
-    // Relative motion of points of the sampled shape, seen from the field, about the origin of the field's frame.
-    let (s, f) = (&sampled.motion, &field.motion);
-    let spin = s.angular - f.angular;
-    let at = field.pose.position;
-    let drift = s.linear + s.angular.cross(at - s.about) - f.linear - f.angular.cross(at - f.about);
-    let into_field = |v: Vec3| field.pose.inverse_transform_vector(v) * MOTION_AHEAD;
     Some(Direction {
         points,
         surface,
@@ -103,8 +125,9 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         origin: to_field.position,
         field_pose: field.pose,
         field_axes: field.pose.axes(),
-        drift: into_field(drift),
-        spin: into_field(spin),
+        goes: Going::new(&sampled.motion, &field.pose),
+        comes: Going::new(&field.motion, &field.pose),
+        bend: bend(sampled.shape) + bend(field.shape),
         sign,
         inset: INSET_PART * sampled.shape.half_thickness(),
         near: NEAR.min(margin),
@@ -127,6 +150,12 @@ fn surface_of(shape: &Shape, depth_limit: f32) -> Option<Surface<'_>> {
             None => Surface::Sheet(Skin::of(mesh), depth_limit),
         },
     })
+}
+
+/// See [`Direction::bend`]: half of one over the radius of the bends that matter, taken to be that of the mesh. What primitives there are is convex, and flat
+/// enough: what moves past comes no nearer than their tangents say.
+fn bend(shape: &Shape) -> f32 {
+    if let Shape::Mesh(mesh) = shape { 0.5 / mesh.collider().radius } else { 0.0 }
 }
 
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.

@@ -91,7 +91,7 @@ impl Direction<'_> {
         if near == 0 {
             return Answers { distance, normal, found: 0, doubtful: 0, inset };
         }
-        let closing = normal.dot(self.motion_at(eight.points)).min(Lanes::ZERO);
+        let closing = self.closing_at(eight.points, normal);
         let facing = normal.dot(eight.outwards);
         let found = near
             & facing.below(eight.facing_max).bits()
@@ -134,9 +134,8 @@ impl Direction<'_> {
             let ball = RoundPoint { centre: centres.lane(i), radius: radii.0[i] };
             // The field is exact only near the surface, and the surface of the ball may be far from its centre.
             let (distance, gradient) = self.surface.exact(ball.centre, self.skin.as_ref(), &mut guess);
-            let motion = self.drift + self.spin.cross(ball.centre);
             let separation = distance - ball.radius;
-            let closing = gradient.dot(motion).min(0.0);
+            let closing = self.closing_at(Lanes3::splat(ball.centre), Lanes3::splat(gradient)).0[0];
             let meant = separation < self.margin && separation + closing < self.near;
             if meant && gradient.length_squared() > GRADIENT_SQUARED_MIN {
                 candidates.push(self.candidate(ball, gradient.normalize(), distance, index));
@@ -155,15 +154,21 @@ impl Direction<'_> {
     #[inline(always)]
     pub(super) fn reach(&self, centres: Lanes3, radii: Lanes) -> Lanes {
         // No point of a ball moves further than its centre, and what turning about the centre adds.
-        let motion = self.motion_at(centres).length() + radii * self.spin.length();
+        let [goes, comes] =
+            [&self.goes, &self.comes].map(|m| m.at(centres).length() + radii * m.spin.length());
+        let motion = goes + comes;
         (motion + Lanes::splat(self.near)).min(Lanes::splat(self.margin))
     }
 
+    /// How much nearer points may come to the surface, or it to them: 0 or less. Metres.
+    ///
+    /// Not only by their relative motion: of two bodies that fall together one may be stopped, and the other comes on.
     #[inline(always)]
-    fn motion_at(&self, points: Lanes3) -> Lanes3 {
-        let (w, p) = (self.spin, points);
-        let spun = Lanes3 { x: p.z * w.y - p.y * w.z, y: p.x * w.z - p.z * w.x, z: p.y * w.x - p.x * w.y };
-        spun.plus(Lanes3::splat(self.drift))
+    fn closing_at(&self, points: Lanes3, normals: Lanes3) -> Lanes {
+        let (goes, comes) = (self.goes.at(points), self.comes.at(points));
+        let relative = goes.minus(comes);
+        let (away, along) = (Lanes::ZERO - normals.dot(comes), normals.dot(goes));
+        along.min(Lanes::ZERO) + away.min(Lanes::ZERO) - relative.dot(relative) * self.bend
     }
 
     /// The candidate of a point (of the field's frame), with the distance of its centre and the gradient there.
