@@ -1,10 +1,12 @@
 //! Directions: whose points are looked up in whose field.
 
+use forerun_lanes::{Lanes, V8};
 use glam::Mat3;
 
 use super::{MOTION_AHEAD, NEAR};
-use crate::contact::Placed;
+use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
+use crate::sdf::eight::splat;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
 use crate::shape::{Enclosure, Mesh};
@@ -51,10 +53,12 @@ pub(super) struct Direction<'a> {
     pub(super) field_pose: Pose,
     /// Rotation of the field in the world.
     pub(super) field_axes: Mat3,
-    /// A point x of the field's frame is about to move by `drift + spin × x`, with some to spare. Metres.
-    pub(super) drift: Vec3,
-    /// See `drift`. Radians.
-    pub(super) spin: Vec3,
+    /// How the points are about to move.
+    pub(super) goes: Going,
+    /// How the field is.
+    pub(super) comes: Going,
+    /// What moves by x against the other comes nearer to it than the tangents say by up to this times x²: surfaces are bent. 1/m
+    pub(super) bend: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
     pub(super) inset: f32,
     /// Points closer than this count, or that will be closer at the end of the step. Metres.
@@ -71,6 +75,35 @@ impl Direction<'_> {
             Way::There => -1.0,
             Way::Back => 1.0,
         }
+    }
+}
+
+/// A motion in the field's frame, with some to spare: a point x is about to move by `drift + spin × x`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Going {
+    /// Metres.
+    drift: Vec3,
+    /// Radians.
+    spin: Vec3,
+}
+
+impl Going {
+    fn new(motion: &Motion, field: &Pose) -> Going {
+        let into_field = |v: Vec3| field.inverse_transform_vector(v) * MOTION_AHEAD;
+        let drift = motion.linear + motion.angular.cross(field.position - motion.about);
+        Going { drift: into_field(drift), spin: into_field(motion.angular) }
+    }
+
+    /// The motion of points of the field's frame. Metres.
+    #[inline(always)]
+    pub(super) fn at<F: Lanes>(&self, points: V8<F>) -> V8<F> {
+        splat::<F>(self.spin).cross(points) + splat(self.drift)
+    }
+
+    /// How far points of balls move at most: no further than the centre, and what turning about it adds. Metres.
+    #[inline(always)]
+    pub(super) fn at_most<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
+        self.at(centres).length() + radii * F::splat(self.spin.length())
     }
 }
 
@@ -139,12 +172,6 @@ fn direction<'a>(
         _ => (None, 0.0),
     };
     let to_field = field.pose.inverse() * sampled.pose;
-    // Relative motion of points of the sampled shape, seen from the field, about the origin of the field's frame.
-    let (s, f) = (&sampled.motion, &field.motion);
-    let spin = s.angular - f.angular;
-    let at = field.pose.position;
-    let drift = s.linear + s.angular.cross(at - s.about) - f.linear - f.angular.cross(at - f.about);
-    let into_field = |v: Vec3| field.pose.inverse_transform_vector(v) * MOTION_AHEAD;
     Some(Direction {
         way,
         points,
@@ -155,8 +182,9 @@ fn direction<'a>(
         origin: to_field.position,
         field_pose: field.pose,
         field_axes: field.pose.axes(),
-        drift: into_field(drift),
-        spin: into_field(spin),
+        goes: Going::new(&sampled.motion, &field.pose),
+        comes: Going::new(&field.motion, &field.pose),
+        bend: bend(sampled.shape) + bend(field.shape),
         inset: INSET_PART * sampled.shape.half_thickness(),
         near: NEAR.min(margin),
         margin,
@@ -182,6 +210,12 @@ fn primitive_surface<'a>(shape: &Shape, planes: &'a [(Vec3, f32)]) -> Option<Sur
         Shape::HalfSpace => Surface::HalfSpace,
         Shape::Compound(_) | Shape::Mesh(_) => return None,
     })
+}
+
+/// See [`Direction::bend`]: half of one over the radius of the bends that matter, taken to be that of the mesh. What primitives there are is convex, and flat
+/// enough: what moves past comes no nearer than their tangents say.
+fn bend(shape: &Shape) -> f32 {
+    if let Shape::Mesh(mesh) = shape { 0.5 / mesh.collider().radius } else { 0.0 }
 }
 
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.

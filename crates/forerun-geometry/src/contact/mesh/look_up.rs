@@ -121,7 +121,7 @@ impl Direction<'_> {
         if near == 0 {
             return Answers { distance, normal, found: 0, doubtful: 0 };
         }
-        let closing = normal.dot(self.motion_at(eight.points)).min(F::zero());
+        let closing = self.closing_at(eight.points, normal);
         let facing = normal.dot(eight.outwards);
         let found = facing.lt(eight.facing_max)
             & (distance + closing).lt(F::splat(self.near))
@@ -171,14 +171,19 @@ impl Direction<'_> {
     /// How near to the surface points of balls must be to count. Metres.
     #[inline(always)]
     pub(super) fn reach<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
-        // No point of a ball moves further than its centre, and what turning about the centre adds.
-        let motion = self.motion_at(centres).length() + radii * F::splat(self.spin.length());
+        let motion = self.goes.at_most(centres, radii) + self.comes.at_most(centres, radii);
         (motion + F::splat(self.near)).min(F::splat(self.margin))
     }
 
+    /// How much nearer points may come to the surface, or it to them: 0 or less. Metres.
+    ///
+    /// Not only by their relative motion: of two bodies that fall together one may be stopped, and the other comes on.
     #[inline(always)]
-    fn motion_at<F: Lanes>(&self, points: V8<F>) -> V8<F> {
-        splat::<F>(self.spin).cross(points) + splat(self.drift)
+    fn closing_at<F: Lanes>(&self, points: V8<F>, normals: V8<F>) -> F {
+        let (goes, comes) = (self.goes.at(points), self.comes.at(points));
+        let relative = goes - comes;
+        let (away, along) = (-normals.dot(comes), normals.dot(goes));
+        along.min(F::zero()) + away.min(F::zero()) - relative.dot(relative) * F::splat(self.bend)
     }
 
     /// The normal in the world of a point with the given gradient, and the point half of `way` (metres) against the gradient from it.
@@ -206,9 +211,8 @@ fn find_round(direction: &Direction, balls: &[RoundPoint], candidates: &mut Cand
         let centre = direction.axes * centres[i] + direction.origin;
         // The field is exact only near the surface, and the surface of the ball may be far from its centre.
         let (distance, gradient) = direction.surface.exact(centre, direction.skin.as_ref(), &mut guess);
-        let motion = direction.drift + direction.spin.cross(centre);
         let separation = distance - radii[i];
-        let closing = gradient.dot(motion).min(0.0);
+        let closing = direction.closing_at::<Portable>(splat(centre), splat(gradient)).to_array()[0];
         let meant = separation < direction.margin && separation + closing < direction.near;
         if meant && gradient.length_squared() > GRADIENT_SQUARED_MIN {
             let normal = gradient.normalize();
