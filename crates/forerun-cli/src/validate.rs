@@ -7,6 +7,8 @@ mod known_misses;
 mod lab;
 mod timelines;
 
+use std::fmt;
+
 pub(crate) use cases::CASES;
 
 /// One number of a case beside what is asked of it.
@@ -16,10 +18,42 @@ pub(crate) struct Figure {
     pub(crate) name: String,
     /// What came out.
     pub(crate) value: f64,
-    /// What is asked, in words: `at most 0.5`, `1.2 ± 0.1`.
-    pub(crate) limit: String,
+    /// What is asked of it.
+    pub(crate) limit: Limit,
     /// Whether it holds.
     pub(crate) verdict: Verdict,
+}
+
+/// What is asked of a figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Limit {
+    AtMost(f64),
+    AtLeast(f64),
+    Near { expected: f64, tolerance: f64 },
+    Nothing,
+}
+
+impl Limit {
+    /// By how much a value misses the limit; 0 or less where it holds.
+    pub(crate) fn shortfall(self, value: f64) -> f64 {
+        match self {
+            Limit::AtMost(limit) => value - limit,
+            Limit::AtLeast(limit) => limit - value,
+            Limit::Near { expected, tolerance } => (value - expected).abs() - tolerance,
+            Limit::Nothing => f64::NEG_INFINITY,
+        }
+    }
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Limit::AtMost(limit) => write!(f, "at most {limit}"),
+            Limit::AtLeast(limit) => write!(f, "at least {limit}"),
+            Limit::Near { expected, tolerance } => write!(f, "{expected:.6} ± {tolerance:.6}"),
+            Limit::Nothing => write!(f, "reported"),
+        }
+    }
 }
 
 /// What became of a figure.
@@ -72,35 +106,30 @@ impl Verdict {
 }
 
 impl Figure {
+    fn judged(name: impl Into<String>, value: f64, limit: Limit) -> Self {
+        // Not "not short": what is not a number misses.
+        let verdict = Verdict::of(limit.shortfall(value) <= 0.0);
+        Figure { name: name.into(), value, limit, verdict }
+    }
+
     /// A number that is not to exceed a limit.
     pub(crate) fn at_most(name: impl Into<String>, value: f64, limit: f64) -> Self {
-        Figure {
-            name: name.into(),
-            value,
-            limit: format!("at most {limit}"),
-            verdict: Verdict::of(value <= limit),
-        }
+        Figure::judged(name, value, Limit::AtMost(limit))
     }
 
     /// A number that is to reach a limit.
     pub(crate) fn at_least(name: impl Into<String>, value: f64, limit: f64) -> Self {
-        Figure {
-            name: name.into(),
-            value,
-            limit: format!("at least {limit}"),
-            verdict: Verdict::of(value >= limit),
-        }
+        Figure::judged(name, value, Limit::AtLeast(limit))
     }
 
     /// A number that is to be within a tolerance of another.
     pub(crate) fn near(name: impl Into<String>, value: f64, expected: f64, tolerance: f64) -> Self {
-        let verdict = Verdict::of((value - expected).abs() <= tolerance);
-        Figure { name: name.into(), value, limit: format!("{expected:.6} ± {tolerance:.6}"), verdict }
+        Figure::judged(name, value, Limit::Near { expected, tolerance })
     }
 
     /// A number that nothing is asked of.
     pub(crate) fn reported(name: impl Into<String>, value: f64) -> Self {
-        Figure { name: name.into(), value, limit: "reported".to_owned(), verdict: Verdict::Reported }
+        Figure { name: name.into(), value, limit: Limit::Nothing, verdict: Verdict::Reported }
     }
 
     /// A time that is not to exceed a limit.

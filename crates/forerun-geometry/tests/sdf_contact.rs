@@ -441,3 +441,33 @@ fn a_bar_past_the_middle_of_another_is_not_pulled_through() {
     let down = points.iter().filter(|p| p.normal.y < -0.9).count();
     assert!(!points.is_empty() && down == 0, "{down} of {} pull it through", points.len());
 }
+
+/// A block 1 m deep on a four-sided face, as a mesh of its own frame.
+fn wedge(face: [Vec3; 4]) -> Shape {
+    let corners: Vec<Vec3> = [-0.5, 0.5].iter().flat_map(|z| face.map(|c| c + Vec3::Z * *z)).collect();
+    let hull = Hull::new(&corners).expect("a wedge");
+    let corners: Vec<Vec3> = hull.triangles().flatten().collect();
+    let triangles = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    shape((corners, triangles))
+}
+
+#[test]
+fn wedges_touch_at_the_corners_of_their_joint() {
+    // Two stones of an arch: the joint is askew to the grids of both, whose cells are an eighth of a metre.
+    let (inner, outer) = (Vec3::new(2.8, 5.1, 0.0), Vec3::new(4.117, 5.953, 0.0));
+    let below = wedge([Vec3::new(3.14, 3.835, 0.0), Vec3::new(4.65, 4.487, 0.0), outer, inner]);
+    let above = wedge([inner, outer, Vec3::new(3.513, 7.393, 0.0), Vec3::new(2.416, 6.351, 0.0)]);
+    let normal = Vec3::new(inner.y - outer.y, outer.x - inner.x, 0.0).normalize();
+    for gap in [0.0, 0.002, -0.002] {
+        let points = all_points(&contact(&at(&below, Vec3::ZERO), &at(&above, normal * gap)));
+        for corner in [inner, outer].iter().flat_map(|c| [-0.5, 0.5].map(|z| *c + Vec3::Z * z)) {
+            let point = points
+                .iter()
+                .min_by(|a, b| a.position.distance(corner).total_cmp(&b.position.distance(corner)));
+            let point = point.expect("has points");
+            assert!(point.position.distance(corner) < 0.01, "none at {corner}, gap {gap}");
+            assert!((point.separation - gap).abs() < 5e-4, "{} at {corner}, gap {gap}", point.separation);
+            assert!(point.normal.dot(normal) > 0.999, "{} instead of {normal}", point.normal);
+        }
+    }
+}

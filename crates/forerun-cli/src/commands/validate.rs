@@ -68,7 +68,13 @@ impl ValidateReport {
         self.judged += usize::from(figure.verdict.counts());
         self.passed += usize::from(figure.verdict == Verdict::Pass);
         let Figure { name, value, limit, verdict } = figure;
-        self.figures.push(FigureReport { case, figure: name, value, limit, verdict: verdict.key() });
+        self.figures.push(FigureReport {
+            case,
+            figure: name,
+            value,
+            limit: limit.to_string(),
+            verdict: verdict.key(),
+        });
     }
 
     fn print_end(&self) -> Result<(), Failure> {

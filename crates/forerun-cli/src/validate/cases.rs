@@ -101,5 +101,10 @@ mod tests {
             .filter(|known| !misses.iter().any(|(case, figure)| known.covers(case, &figure.name)));
         let mended: Vec<_> = mended.collect();
         assert!(mended.is_empty(), "these hold their limits now, take them off the table: {mended:#?}");
+        let grown = misses.iter().filter(|(case, figure)| {
+            KNOWN_MISSES.iter().any(|k| k.covers(case, &figure.name) && k.has_grown(figure))
+        });
+        let grown: Vec<_> = grown.collect();
+        assert!(grown.is_empty(), "these miss their limits by much more than the table says: {grown:#?}");
     }
 }

@@ -1,7 +1,9 @@
 //! Known misses: figures that do not hold their limit, with what they were when they were put here, so that nobody forgets them.
 //!
-//! Limits are not widened. A test compares the table with what is measured: a figure that is not in it must hold its limit, and one
-//! that holds it again must be taken out.
+//! Limits are not widened. A test compares the table with what is measured: a figure that is not in it must hold its limit, one that
+//! holds it again must be taken out, and one that misses by much more than it did is a step back.
+
+use super::Figure;
 
 /// A figure that misses its limit.
 #[derive(Clone, Copy, Debug)]
@@ -9,17 +11,27 @@ pub(crate) struct Miss {
     case: &'static str,
     figure: &'static str,
     /// What it was when it was put here.
-    #[allow(dead_code, reason = "for readers, and for the message of the test")]
     value: f64,
     /// Why, as far as is known.
     #[allow(dead_code, reason = "for readers, and for the message of the test")]
     cause: &'static str,
 }
 
+/// A known miss may grow by this factor: what rounding and chaos do to it.
+const GROWTH_MAX: f64 = 1.5;
+
 impl Miss {
     /// Whether this is the figure meant.
     pub(crate) fn covers(&self, case: &str, figure: &str) -> bool {
         self.case == case && self.figure == figure
+    }
+
+    /// Whether the figure, which this covers, misses its limit by much more than when it was put here.
+    pub(crate) fn has_grown(&self, figure: &Figure) -> bool {
+        let short = |value| figure.limit.shortfall(value);
+        // Not "is above": a value that is not a number has grown.
+        let as_before = short(figure.value) <= GROWTH_MAX * short(self.value);
+        !as_before
     }
 }
 

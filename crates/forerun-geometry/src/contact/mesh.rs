@@ -14,6 +14,7 @@ mod directions;
 mod look_up;
 mod points;
 mod reduce;
+mod sharp;
 mod smooth;
 
 use candidates::Candidates;

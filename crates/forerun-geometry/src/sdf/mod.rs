@@ -5,49 +5,70 @@
 //! see [`crate::contact`].
 
 use crate::Vec3;
-use crate::shape::Mesh;
+use crate::shape::{Enclosure, Mesh};
 
-mod bake;
+pub(crate) mod bake;
+mod crossing;
 pub(crate) mod eight;
 mod field;
+pub(crate) mod kept;
+pub(crate) mod mend;
+pub(crate) mod moments;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
-mod pseudo_normals;
+pub(crate) mod pseudo_normals;
 pub(crate) mod samples;
+pub(crate) mod winding;
 
+pub use bake::BakeProgress;
 pub use field::Field;
+pub use kept::{BakeKey, KeptError};
 pub use samples::{Sample, Samples};
 
-use nearest::Skin;
+use moments::Moments;
 use pseudo_normals::{EdgeKind, PseudoNormals};
 
 /// All that contact needs to know of a mesh beyond its triangles, computed once. The default finds nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshCollider {
-    /// Signed distances; none for an open mesh, which has no inside.
+    /// Signed distances; none for a mesh without an inside.
     pub field: Option<Field>,
     /// Points of the surface: vertices, and points along long edges.
     pub samples: Samples,
     /// Distance from the origin to the farthest vertex. Metres.
     pub radius: f32,
+    /// Of what is inside, where the triangles do not say it.
+    pub(crate) moments: Option<Moments>,
+    /// How far off its surface the field sees points of its own sharp edges and corners: none where all is smooth. Metres.
+    ///
+    /// Between its nodes a field cuts edges off that are askew to its grid. Contact asks the triangles there.
+    pub(crate) blur: f32,
     normals: PseudoNormals,
 }
 
 /// Most points along edges; longer spacings where there would be more.
 const EDGE_SAMPLES_MAX: f32 = 16_384.0;
+/// Surfaces are smooth whose field is off by less than this part of a cell.
+const BLUR_PART: f32 = 1.0 / 6.0;
 /// Points along an edge of middling length of an open mesh, whose thickness says nothing.
 const OPEN_EDGE_PARTS: f32 = 4.0;
 
 impl MeshCollider {
-    /// The collider of a mesh that is complete but for it. Takes some milliseconds for thousands of triangles.
+    /// The collider of a mesh that is complete but for it.
     ///
-    /// An open mesh gets no field: contact goes to its triangles, and only their front collides.
-    pub(crate) fn new(mesh: &Mesh) -> MeshCollider {
-        let normals = PseudoNormals::new(mesh);
-        let field = mesh.closed.then(|| bake::bake(Skin { mesh, normals: &normals }));
-        let samples = Samples::new(sample_points(mesh, &normals));
+    /// An open mesh has no field: contact goes to its triangles, and only their front collides.
+    pub(crate) fn new(mesh: &Mesh, normals: PseudoNormals, field: Option<Field>) -> MeshCollider {
+        let mut points = sample_points(mesh, &normals);
+        let mut moments = None;
+        if let (Enclosure::Mended, Some(field)) = (mesh.enclosure, &field) {
+            // What is inside of other parts touches nothing.
+            points.retain(|sample| field.distance_and_gradient(sample.point).0 > -0.5 * field.cell());
+            moments = Some(Moments::of(field));
+        }
+        let samples = Samples::new(points);
         let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
-        MeshCollider { field, samples, radius, normals }
+        let blur = field.as_ref().map_or(0.0, |field| blur(field, &samples));
+        MeshCollider { field, samples, radius, moments, blur, normals }
     }
 
     /// Memory that it takes.
@@ -55,6 +76,12 @@ impl MeshCollider {
     pub fn bytes(&self) -> usize {
         self.field.as_ref().map_or(0, Field::bytes) + self.samples.bytes() + self.normals.bytes()
     }
+}
+
+/// [`MeshCollider::blur`]: how far off the points of the surface seem to be, where that is too much to be left alone.
+fn blur(field: &Field, samples: &Samples) -> f32 {
+    let off = samples.iter().fold(0.0_f32, |off, s| off.max(field.distance_and_gradient(s.point).0));
+    if off > BLUR_PART * field.cell() { off } else { 0.0 }
 }
 
 /// The vertices, and points along ridges and boundaries no further apart than the thickness of the mesh (of an open
@@ -73,7 +100,7 @@ fn sample_points(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Sample> {
         })
         .collect();
     let total = sharp.iter().map(|([a, b], ..)| a.distance(*b)).sum::<f32>();
-    let wished = if mesh.closed {
+    let wished = if mesh.has_inside() {
         2.0 * mesh.half_thickness()
     } else {
         total / (OPEN_EDGE_PARTS * sharp.len().max(1) as f32)

@@ -1,13 +1,15 @@
 //! Directions: whose points are looked up in whose field.
 
+use forerun_lanes::{Lanes, V8};
 use glam::Mat3;
 
 use super::{MOTION_AHEAD, NEAR};
-use crate::contact::Placed;
+use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
+use crate::sdf::eight::splat;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
-use crate::shape::Mesh;
+use crate::shape::{Enclosure, Mesh};
 use crate::{Pose, Shape, Vec3};
 
 use super::points::{PointList, Region, RoundPoint};
@@ -41,6 +43,8 @@ pub(super) struct Direction<'a> {
     pub(super) surface: Surface<'a>,
     /// The triangles of the surface if it is a mesh.
     pub(super) skin: Option<Skin<'a>>,
+    /// By how much the surface may take edges and corners to be farther away than they are. Metres.
+    pub(super) blur: f32,
     /// From the frame of the points to that of the field: rotation.
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
@@ -49,12 +53,12 @@ pub(super) struct Direction<'a> {
     pub(super) field_position: Vec3,
     /// Rotation of the field in the world.
     pub(super) field_axes: Mat3,
-    /// A point x of the field's frame is about to move by `drift + spin × x`, with some to spare. Metres.
-    pub(super) drift: Vec3,
-    /// See `drift`. Radians.
-    pub(super) spin: Vec3,
-    /// Length of `spin`. Radians.
-    pub(super) turn: f32,
+    /// How the points are about to move.
+    pub(super) goes: Going,
+    /// How the field is.
+    pub(super) comes: Going,
+    /// What moves by x against the other comes nearer to it than the tangents say by up to this times x²: surfaces are bent. 1/m
+    pub(super) bend: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
     pub(super) inset: f32,
     /// Points closer than this count, or that will be closer at the end of the step. Metres.
@@ -71,6 +75,38 @@ impl Direction<'_> {
             Way::There => -1.0,
             Way::Back => 1.0,
         }
+    }
+}
+
+/// A motion in the field's frame, with some to spare: a point x is about to move by `drift + spin × x`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Going {
+    /// Metres.
+    drift: Vec3,
+    /// Radians.
+    spin: Vec3,
+    /// Length of `spin`. Radians.
+    turn: f32,
+}
+
+impl Going {
+    /// `at`: the origin of the field's frame. Metres.
+    fn new(motion: &Motion, at: Vec3, into_field: &Mat3) -> Going {
+        let drift = motion.linear + motion.angular.cross(at - motion.about);
+        let spin = *into_field * motion.angular * MOTION_AHEAD;
+        Going { drift: *into_field * drift * MOTION_AHEAD, spin, turn: spin.length() }
+    }
+
+    /// The motion of points of the field's frame. Metres.
+    #[inline(always)]
+    pub(super) fn at<F: Lanes>(&self, points: V8<F>) -> V8<F> {
+        splat::<F>(self.spin).cross(points) + splat(self.drift)
+    }
+
+    /// How far points of balls move at most: no further than the centre, and what turning about it adds. Metres.
+    #[inline(always)]
+    pub(super) fn at_most<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
+        self.at(centres).length() + radii * F::splat(self.turn)
     }
 }
 
@@ -140,28 +176,32 @@ fn direction<'a>(
         (Shape::Mesh(mesh), _) => Points::Sharp(&mesh.collider().samples),
         _ => memory.points.points()?,
     };
-    let (surface, skin) = match field.shape {
-        Shape::Mesh(mesh) => (mesh_surface(mesh, 2.0 * sampled.shape.half_thickness()), Some(Skin::of(mesh))),
-        shape => (primitive_surface(shape, &memory.planes)?, None),
+    let surface = match field.shape {
+        Shape::Mesh(mesh) => mesh_surface(mesh, 2.0 * sampled.shape.half_thickness()),
+        shape => primitive_surface(shape, &memory.planes)?,
+    };
+    // The triangles of a mended mesh do not tell its sides.
+    let (skin, blur) = match field.shape {
+        Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
+            (Some(Skin::of(mesh)), mesh.collider().blur)
+        }
+        _ => (None, 0.0),
     };
     let into_field = field_axes.transpose();
-    // Relative motion of points of the sampled shape, seen from the field, about the origin of the field's frame.
-    let (s, f) = (&sampled.motion, &field.motion);
     let at = field.pose.position;
-    let drift = s.linear + s.angular.cross(at - s.about) - f.linear - f.angular.cross(at - f.about);
-    let spin = into_field * (s.angular - f.angular) * MOTION_AHEAD;
     Some(Direction {
         way,
         points,
         surface,
         skin,
+        blur,
         axes: into_field * sampled_axes,
         origin: into_field * (sampled.pose.position - at),
         field_position: at,
         field_axes,
-        drift: into_field * drift * MOTION_AHEAD,
-        spin,
-        turn: spin.length(),
+        goes: Going::new(&sampled.motion, at, &into_field),
+        comes: Going::new(&field.motion, at, &into_field),
+        bend: bend(sampled.shape) + bend(field.shape),
         inset: INSET_PART * sampled.shape.half_thickness(),
         near: NEAR.min(margin),
         margin,
@@ -189,9 +229,15 @@ fn primitive_surface<'a>(shape: &Shape, planes: &'a [(Vec3, f32)]) -> Option<Sur
     })
 }
 
+/// See [`Direction::bend`]: half of one over the radius of the bends that matter, taken to be that of the mesh. What primitives there are is convex, and flat
+/// enough: what moves past comes no nearer than their tangents say.
+fn bend(shape: &Shape) -> f32 {
+    if let Shape::Mesh(mesh) = shape { 0.5 / mesh.collider().radius } else { 0.0 }
+}
+
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.
 fn region_of(mesh: &Mesh, to_primitive: &Pose, margin: f32) -> Region {
     let radius = mesh.collider().radius;
-    let spacing = if mesh.closed { 2.0 * mesh.half_thickness() } else { radius };
+    let spacing = if mesh.has_inside() { 2.0 * mesh.half_thickness() } else { radius };
     Region { centre: to_primitive.position, radius: radius + margin, spacing }
 }

@@ -77,7 +77,8 @@ fn find_sharp_lanes<F: Lanes, S: LookUp>(
     for &leaf in &*leaves {
         let (leaf, meant) = samples.leaf(leaf as usize);
         let points = transformed::<F>(leaf.points.form(), &direction.axes, direction.origin);
-        let Some(answer) = surface.look_up_near(points, direction.margin) else { continue };
+        let Some(answer) = surface.look_up_near(points, direction.margin + direction.blur) else { continue };
+        let answer = direction.sharpened(points, answer, meant, 0.0);
         let outwards = transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO);
         let eight = Eight { points, outwards, facing_max: F::from_array(leaf.facing_max.to_array()) };
         let mut there = direction.judge(&eight, answer, V8::zero(), meant);
@@ -85,7 +86,9 @@ fn find_sharp_lanes<F: Lanes, S: LookUp>(
             // Further inside their own surface the face that the points have come through is the nearest one even for
             // the corners of a box that stands exactly on another of the same size.
             let back = outwards * F::splat(direction.inset);
-            let mut inside = direction.judge(&eight, surface.look_up(points - back), back, there.doubtful);
+            let (at, asked) = (points - back, there.doubtful);
+            let answer = direction.sharpened(at, surface.look_up(at), asked, direction.inset);
+            let mut inside = direction.judge(&eight, answer, back, asked);
             // Better than an answer that is good enough is only one without doubt.
             inside.found &= !inside.doubtful | !there.found;
             there.found &= !inside.found;
@@ -139,7 +142,7 @@ impl Direction<'_> {
     ) -> Answers<F> {
         let normal = normalized(gradient);
         let distance = distance + normal.dot(back);
-        let closing = normal.dot(self.motion_at(eight.points)).min(F::zero());
+        let closing = self.closing_at(eight.points, normal);
         let facing = normal.dot(eight.outwards);
         let near = distance.lt(F::splat(self.margin));
         let found = facing.lt(eight.facing_max)
@@ -161,7 +164,7 @@ impl Direction<'_> {
             // What lies on a plane is pushed off it at a right angle, whatever interpolation says of its rim.
             let flat = eight.facing_max.le(F::splat(FLAT_MAX));
             normal = flat.select_v(-eight.outwards, normal);
-            rough &= !flat.bits();
+            rough &= if self.blur > 0.0 { 0 } else { !flat.bits() };
         }
         let found = F::Mask::from_bits(answers.found);
         let midpoint = eight.points - normal * (F::splat(0.5) * answers.distance);
@@ -183,15 +186,26 @@ impl Direction<'_> {
     fn near<F: Lanes, S: LookUp>(&self, surface: &S, spheres: &Spheres) -> u32 {
         let radii = F::from_array(spheres.radius.to_array());
         let centres = transformed(spheres.centre.form::<F>(), &self.axes, self.origin);
-        // No point of a ball moves further than its centre, and what turning about the centre adds.
-        let motion = self.motion_at(centres).length() + radii * F::splat(self.turn);
-        let near = (motion + F::splat(self.near)).min(F::splat(self.margin));
+        let near = self.reach(centres, radii) + F::splat(self.blur);
         (surface.lower_bound(centres) - radii).lt(near).bits()
     }
 
+    /// How near to the surface points of balls must be to count. Metres.
     #[inline(always)]
-    fn motion_at<F: Lanes>(&self, points: V8<F>) -> V8<F> {
-        splat::<F>(self.spin).cross(points) + splat(self.drift)
+    pub(super) fn reach<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
+        let motion = self.goes.at_most(centres, radii) + self.comes.at_most(centres, radii);
+        (motion + F::splat(self.near)).min(F::splat(self.margin))
+    }
+
+    /// How much nearer points may come to the surface, or it to them: 0 or less. Metres.
+    ///
+    /// Not only by their relative motion: of two bodies that fall together one may be stopped, and the other comes on.
+    #[inline(always)]
+    fn closing_at<F: Lanes>(&self, points: V8<F>, normals: V8<F>) -> F {
+        let (goes, comes) = (self.goes.at(points), self.comes.at(points));
+        let relative = goes - comes;
+        let (away, along) = (-normals.dot(comes), normals.dot(goes));
+        along.min(F::zero()) + away.min(F::zero()) - relative.dot(relative) * F::splat(self.bend)
     }
 
     /// The normal in the world of a point with the given gradient, and the point half of `way` (metres) against the gradient from it.
@@ -220,9 +234,8 @@ fn find_round(direction: &Direction, balls: &[RoundPoint], candidates: &mut Cand
         let centre = direction.axes * centres[i] + direction.origin;
         // The field is exact only near the surface, and the surface of the ball may be far from its centre.
         let (distance, gradient) = direction.surface.exact(centre, direction.skin.as_ref(), &mut guess);
-        let motion = direction.drift + direction.spin.cross(centre);
         let separation = distance - radii[i];
-        let closing = gradient.dot(motion).min(0.0);
+        let closing = direction.closing_at::<Portable>(splat(centre), splat(gradient)).to_array()[0];
         let meant = separation < direction.margin && separation + closing < direction.near;
         if meant && gradient.length_squared() > GRADIENT_SQUARED_MIN {
             let normal = gradient.normalize();
