@@ -1,32 +1,35 @@
-//! Field: the signed distance to a closed surface on a dense grid, negative inside.
+//! Field: the signed distance to a closed surface on a grid, negative inside.
 //!
 //! Promise: a look-up is a pure function of the field and the point, with the same bits on every target, and never
 //! panics, whatever the point (not-a-number gives not-a-number).
 #![allow(clippy::needless_range_loop, reason = "counted loops over fixed arrays are what vectorises")]
 
-use super::kept::Reader;
+use super::accuracy::FieldError;
+use super::blocks::{self, Blocks};
 use super::lanes::{Lanes, Lanes3, WIDTH};
 use crate::{Aabb, Vec3};
 
-/// Signed distances in 16 bits at the nodes of a dense grid, read by trilinear interpolation.
+/// Signed distances in 16 bits at the nodes of a grid, read by trilinear interpolation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// Position of the first node. Metres.
-    origin: Vec3,
+    pub(super) origin: Vec3,
     /// Distance between neighbouring nodes along x, y and z, about the same. Metres.
-    cell: Vec3,
-    /// Number of nodes along x, y and z, 3 or more each; fewer than 2^23 in all.
-    size: [usize; 3],
+    pub(super) cell: Vec3,
+    /// Number of nodes along x, y and z, 3 or more each; of a dense grid fewer than 2^23 in all.
+    pub(super) size: [usize; 3],
     /// Number of cells along x, y and z, ready to compute with.
-    cells: Vec3,
+    pub(super) cells: Vec3,
     /// Metres per unit of `nodes`.
-    scale: f32,
-    /// Distances at the nodes, x fastest, then y, then z.
-    nodes: Vec<i16>,
+    pub(super) scale: f32,
+    /// What it is off by on the surface.
+    pub(super) error: FieldError,
+    /// Which parts of the grid are fine; none for a dense grid, which is fine everywhere.
+    pub(super) blocks: Option<Blocks>,
+    /// Distances at the nodes: of a dense grid x fastest, then y, then z; else in the order of the blocks.
+    pub(super) nodes: Vec<i16>,
 }
 
-/// More nodes than a grid may have: whole numbers below this are exact in the arithmetic of look-ups.
-const NODES_END: usize = 1 << 23;
 /// The bits of a mask that is set in all lanes.
 const ALL: u32 = (1 << WIDTH) - 1;
 
@@ -38,79 +41,21 @@ struct Place {
     fraction: Lanes3,
     /// From the point of the grid's box nearest to the point, to the point: zero inside. Metres.
     offset: Lanes3,
+    /// Size of a fine cell as a part of that of the cell.
+    step: Lanes,
 }
 
 impl Field {
-    /// A field from distances (metres) at the nodes of a grid, x fastest.
-    ///
-    /// The distances are stored in steps of the largest one over 32767. Before that a twelfth of the sum of second
-    /// differences is taken off: between nodes trilinear interpolation lies above a convex function by that much on
-    /// average, which would make round shapes too small. Not so at sharp edges, where it would make them too large.
-    pub(crate) fn from_distances(origin: Vec3, cell: Vec3, size: [usize; 3], distances: &[f32]) -> Field {
-        let corrected = without_interpolation_bias(size, distances, cell.min_element());
-        let largest = corrected.iter().fold(0.0_f32, |m, d| m.max(d.abs()));
-        let scale = if largest > 0.0 { largest / f32::from(i16::MAX) } else { 1.0 };
-        let nodes = corrected.iter().map(|d| (d / scale).round() as i16).collect();
-        Field { origin, cell, size, cells: Vec3::from_array(size.map(|n| (n - 1) as f32)), scale, nodes }
-    }
-
-    /// Appends what [`Field::read`] reads.
-    pub(super) fn write(&self, out: &mut Vec<u8>) {
-        let numbers = self.origin.to_array().into_iter().chain(self.cell.to_array()).chain([self.scale]);
-        numbers.for_each(|x| out.extend(x.to_le_bytes()));
-        self.size.iter().for_each(|n| out.extend((*n as u32).to_le_bytes()));
-        self.nodes.iter().for_each(|d| out.extend(d.to_le_bytes()));
-    }
-
-    /// A field that was written; none where it cannot be one.
-    pub(super) fn read(reader: &mut Reader<'_>) -> Option<Field> {
-        let (origin, cell, scale) = (reader.vec3()?, reader.vec3()?, reader.f32()?);
-        let size = [reader.u32()?, reader.u32()?, reader.u32()?].map(|n| n as usize);
-        let count = size.iter().try_fold(1_usize, |all, n| all.checked_mul(*n))?;
-        let lengths = [cell.x, cell.y, cell.z, scale];
-        let possible = origin.is_finite()
-            && lengths.iter().all(|x| *x > 0.0 && x.is_finite())
-            && size.iter().all(|n| *n >= 3)
-            && count < NODES_END;
-        if !possible {
-            return None;
-        }
-        let nodes = reader.i16s(count)?;
-        Some(Field {
-            origin,
-            cell,
-            size,
-            cells: Vec3::from_array(size.map(|n| (n - 1) as f32)),
-            scale,
-            nodes,
-        })
+    /// How far it is off at points of the surface.
+    #[must_use]
+    pub fn error(&self) -> FieldError {
+        self.error
     }
 
     /// Largest distance between neighbouring nodes. Metres.
     #[must_use]
     pub fn cell(&self) -> f32 {
         self.cell.max_element()
-    }
-
-    /// Distances between neighbouring nodes along x, y and z. Metres.
-    pub(super) fn cell_size(&self) -> Vec3 {
-        self.cell
-    }
-
-    /// Calls `visit` with the lowest corner of each cell and the distances at its corners: x changes fastest, then y, then z.
-    pub(super) fn each_cell(&self, mut visit: impl FnMut(Vec3, [f32; 8])) {
-        let [nx, ny, nz] = self.size;
-        let (row, layer) = (nx, nx * ny);
-        for z in 0..nz - 1 {
-            for y in 0..ny - 1 {
-                for x in 0..nx - 1 {
-                    let base = z * layer + y * row + x;
-                    let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
-                    let distances = corners.map(|k| f32::from(self.nodes[base + k]) * self.scale);
-                    visit(self.origin + Vec3::new(x as f32, y as f32, z as f32) * self.cell, distances);
-                }
-            }
-        }
     }
 
     /// The box that the grid covers.
@@ -129,7 +74,7 @@ impl Field {
     /// Memory that the nodes take.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<i16>()
+        size_of_val(&*self.nodes) + self.blocks.as_ref().map_or(0, Blocks::bytes)
     }
 
     /// Signed distance (metres) and its gradient (about 1 long) at a point of the field's frame.
@@ -173,6 +118,7 @@ impl Field {
             y: (s0 + fz * (s1 - s0)) * slope.y,
             z: (z1 - z0) * slope.z,
         };
+        let gradient = if self.blocks.is_some() { gradient.scaled(place.step) } else { gradient };
         // Not "outside where above 0": points that are not numbers are not inside.
         let inside = place.offset.dot(place.offset).below(Lanes::splat(f32::MIN_POSITIVE));
         if inside.bits() == ALL {
@@ -208,13 +154,20 @@ impl Field {
         let (x, fx, ox) = self.place_along(0, points.x, inverse_cell.x);
         let (y, fy, oy) = self.place_along(1, points.y, inverse_cell.y);
         let (z, fz, oz) = self.place_along(2, points.z, inverse_cell.z);
+        let offset = Lanes3 { x: ox, y: oy, z: oz };
+        if let Some(blocks) = &self.blocks {
+            let place = blocks.place([x + fx, y + fy, z + fz].map(|at| at.0));
+            let [fx, fy, fz] = place.fraction.map(Lanes);
+            let fraction = Lanes3 { x: fx, y: fy, z: fz };
+            return Place { base: place.base, fraction, offset, step: Lanes(place.step) };
+        }
         // Whole numbers below 2^23 are exact, and adding 2^23 puts them into the lowest bits.
         let base = (z * (self.cells.y + 1.0) + y) * (self.cells.x + 1.0) + x + Lanes::splat(8_388_608.0);
         let mut bits = [0; WIDTH];
         for i in 0..WIDTH {
             bits[i] = base.0[i].to_bits() & 0x007f_ffff;
         }
-        Place { base: bits, fraction: Lanes3 { x: fx, y: fy, z: fz }, offset: Lanes3 { x: ox, y: oy, z: oz } }
+        Place { base: bits, fraction: Lanes3 { x: fx, y: fy, z: fz }, offset, step: Lanes::splat(1.0) }
     }
 
     /// Index of the cell along an axis, position in the cell, and offset from the grid's box.
@@ -230,10 +183,17 @@ impl Field {
         (index, inside - index, (u - inside) * self.cell[axis])
     }
 
+    /// From the lowest node of a cell to the rows of nodes along its four edges in the direction of x.
+    #[inline(always)]
+    pub(super) fn rows(&self) -> [usize; 4] {
+        let (row, layer) = (self.size[0], self.size[0] * self.size[1]);
+        if self.blocks.is_some() { blocks::ROWS } else { [0, row, layer, layer + row] }
+    }
+
     /// Values at the corners of eight cells: x changes fastest, then y, then z.
     #[inline(always)]
     fn corners(&self, base: &[u32; WIDTH]) -> [Lanes; 8] {
-        let (row, layer) = (self.size[0], self.size[0] * self.size[1]);
+        let [_, row, layer, _] = self.rows();
         let mut values = [[0_i32; WIDTH]; 8];
         for i in 0..WIDTH {
             let cell = &self.nodes[base[i] as usize..][..layer + row + 2];
@@ -252,35 +212,10 @@ impl Field {
     }
 }
 
-/// Second differences that would take off more than this part of a cell come from sharp edges: the smallest radius
-/// that the cells are made for takes off a twenty-fourth.
-const ROUND_PART: f32 = 1.0 / 16.0;
-
-/// The distances less (sum of the 6 neighbours - 6 times the node) / 12; nodes on the faces of the grid and at sharp
-/// edges stay.
-fn without_interpolation_bias(size: [usize; 3], distances: &[f32], cell: f32) -> Vec<f32> {
-    let [nx, ny, nz] = size;
-    let (row, layer) = (nx, nx * ny);
-    let mut corrected = distances.to_vec();
-    for z in 1..nz - 1 {
-        for y in 1..ny - 1 {
-            for i in z * layer + y * row + 1..z * layer + y * row + nx - 1 {
-                let d = |k: usize| distances[k];
-                let neighbours =
-                    (d(i - 1) + d(i + 1)) + (d(i - row) + d(i + row)) + (d(i - layer) + d(i + layer));
-                let bias = (neighbours - 6.0 * d(i)) * (1.0 / 12.0);
-                if bias.abs() < ROUND_PART * cell {
-                    corrected[i] = d(i) - bias;
-                }
-            }
-        }
-    }
-    corrected
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sdf::bake::Grid;
 
     const RADIUS: f32 = 0.4;
 
@@ -296,7 +231,7 @@ mod tests {
                 }
             }
         }
-        Field::from_distances(origin, cell, size, &distances)
+        Field::from_distances(&Grid { origin, cell, size }, &distances)
     }
 
     fn points() -> impl Iterator<Item = Vec3> {

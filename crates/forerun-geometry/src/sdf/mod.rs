@@ -7,9 +7,13 @@
 use crate::Vec3;
 use crate::shape::{Enclosure, Mesh};
 
+mod accuracy;
 pub(crate) mod bake;
+mod bake_blocks;
+mod blocks;
 mod crossing;
 mod field;
+mod field_storage;
 pub(crate) mod kept;
 pub(crate) mod lanes;
 pub(crate) mod mend;
@@ -20,6 +24,7 @@ pub(crate) mod pseudo_normals;
 mod samples;
 pub(crate) mod winding;
 
+pub use accuracy::{FieldError, Spread};
 pub use bake::BakeProgress;
 pub use field::Field;
 pub use kept::{BakeKey, KeptError};
