@@ -16,7 +16,7 @@ use super::winding::Winding;
 use crate::Vec3;
 use crate::shape::Mesh;
 
-/// Cells in half the thinnest thickness: 4 make the normals good to a degree (2 would still do).
+/// Cells in half the thinnest thickness, or half the narrowest gap: 4 make the normals good to a degree (2 would still do).
 const CELLS_PER_HALF_THICKNESS: f32 = 4.0;
 /// Cells between the surface and the faces of the grid.
 const PADDING: usize = 2;
@@ -290,9 +290,9 @@ impl Corners {
     }
 }
 
-/// The size of cells that is wished for, or that suits the thickness. Metres.
+/// The size of cells that is wished for, or that suits thickness and gaps. Metres.
 fn wished_cell(mesh: &Mesh, cell: Option<f32>) -> f32 {
-    cell.unwrap_or(mesh.half_thickness() / CELLS_PER_HALF_THICKNESS)
+    cell.unwrap_or_else(|| mesh.half_thickness().min(mesh.measure_half_gap()) / CELLS_PER_HALF_THICKNESS)
 }
 
 /// The wished cell size, or the smallest larger one (in steps of a twentieth) whose grid is not too large.

@@ -247,7 +247,7 @@ mod tests {
             let ((a, g), (b, h)) = (blocks.distance_and_gradient(point), dense.distance_and_gradient(point));
             if b.abs() < 0.04 {
                 // Rounding to 16 bits differs: the farthest node is not the same.
-                assert!((a - b).abs() < 2e-4 && g.distance(h) < 0.02, "{a} {g} and {b} {h} at {point}");
+                assert!((a - b).abs() < 2e-4 && g.distance(h) < 0.05, "{a} {g} and {b} {h} at {point}");
                 near += 1;
             } else if dense.contains(point) {
                 // Four cells are one: a distance bends by a fraction of that.

@@ -5,7 +5,7 @@
 //!
 //! Promise: where blocks meet, both have the same distances up to rounding to 16 bits.
 
-use super::lanes::WIDTH as LANES;
+use forerun_lanes::LANES;
 
 /// Cells along the side of a block.
 pub(super) const BLOCK: usize = 4;
@@ -16,7 +16,7 @@ pub(super) const SIDE: usize = BLOCK + 1;
 /// Nodes of a block, and of a chunk.
 pub(super) const NODES: usize = SIDE * SIDE * SIDE;
 /// From the lowest node of a cell to the rows of nodes along its four edges in the direction of x.
-pub(super) const ROWS: [usize; 4] = [0, SIDE, SIDE * SIDE, SIDE * SIDE + SIDE];
+pub(super) const ROWS: [u32; 4] = [0, SIDE as u32, (SIDE * SIDE) as u32, (SIDE * SIDE + SIDE) as u32];
 
 /// Which blocks of a grid are fine.
 #[derive(Clone, Debug, PartialEq)]

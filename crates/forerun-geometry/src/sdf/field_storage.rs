@@ -94,7 +94,7 @@ impl Field {
 
     /// Calls `visit` with the lowest corner of each cell, its size, and the distances at its corners: x changes fastest, then y, then z.
     pub(super) fn each_cell(&self, mut visit: impl FnMut(Vec3, Vec3, [f32; 8])) {
-        let [_, row, layer, _] = self.rows();
+        let [_, row, layer, _] = self.rows().map(|offset| offset as usize);
         let mut cell = |low: [usize; 3], size: usize, base: usize| {
             let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
             let distances = corners.map(|k| f32::from(self.nodes[base + k]) * self.scale);
@@ -137,6 +137,7 @@ pub(super) const ROUND_PART: f32 = 1.0 / 16.0;
 
 /// The distances less (sum of the 6 neighbours - 6 times the node) / 12; nodes on the faces of the grid and at sharp
 /// edges stay.
+#[allow(clippy::needless_range_loop, reason = "the index is that of the neighbours too")]
 fn without_interpolation_bias(grid: &Grid, distances: &[f32]) -> Vec<f32> {
     let ([nx, ny, nz], cell) = (grid.size, grid.cell.min_element());
     let (row, layer) = (nx, nx * ny);

@@ -12,16 +12,16 @@ pub(crate) mod bake;
 mod bake_blocks;
 mod blocks;
 mod crossing;
+pub(crate) mod eight;
 mod field;
 mod field_storage;
 pub(crate) mod kept;
-pub(crate) mod lanes;
 pub(crate) mod mend;
 pub(crate) mod moments;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
 pub(crate) mod pseudo_normals;
-mod samples;
+pub(crate) mod samples;
 pub(crate) mod winding;
 
 pub use accuracy::{FieldError, Spread};

@@ -1,6 +1,6 @@
 //! Torus knot: a closed tube that winds round a ring.
 
-use super::{FINEST, ShapeError, count};
+use super::{FINEST, ShapeError, count, larger};
 use crate::Vec3;
 use crate::shape::{TriangleList, positive};
 
@@ -45,13 +45,7 @@ impl TorusKnot {
             );
             return Err(ShapeError::new("q", message));
         }
-        positive("winding_radius", self.winding_radius)?;
-        positive("radius", self.radius)?;
-        if self.radius <= self.winding_radius {
-            let message =
-                format!("must be above winding_radius ({}), is {}", self.winding_radius, self.radius);
-            return Err(ShapeError::new("radius", message));
-        }
+        larger(("radius", self.radius), ("winding_radius", self.winding_radius))?;
         positive("tube_radius", self.tube_radius)?;
         count("segments", self.segments, 16..=4096)?;
         count("sides", self.sides, 3..=FINEST)?;

@@ -1,11 +1,10 @@
 //! A link of a chain: a tube along two straights and two bends.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::surface::on_circle;
-use super::{FINEST, count};
+use super::{below, count};
 use crate::shape::{ShapeError, TriangleList, positive};
 
 /// A link in the plane y = 0, long along x.
@@ -24,21 +23,19 @@ pub struct Link {
 }
 
 impl Link {
-    /// Whether the numbers are in their ranges.
+    /// Whether it can be made.
     ///
     /// # Errors
-    /// Names the first that is not.
+    /// When a parameter is out of its range.
     pub fn check(&self) -> Result<(), ShapeError> {
-        positive("tube_radius", self.tube_radius)?;
-        if !(self.radius > self.tube_radius && self.radius.is_finite()) {
-            let message = format!("must be above tube_radius ({}), is {}", self.tube_radius, self.radius);
-            return Err(ShapeError::new("radius", message));
+        let Link { radius, straight, tube_radius, bend_parts, sides } = *self;
+        positive("radius", radius)?;
+        below("tube_radius", tube_radius, radius, "radius")?;
+        if !(straight >= 0.0 && straight.is_finite()) {
+            return Err(ShapeError::new("straight", format!("must be 0 or more, is {straight}")));
         }
-        if !(self.straight >= 0.0 && self.straight.is_finite()) {
-            return Err(ShapeError::new("straight", format!("must be 0 or more, is {}", self.straight)));
-        }
-        count("bend_parts", self.bend_parts, 2..=512)?;
-        count("sides", self.sides, 3..=FINEST)
+        count("bend_parts", bend_parts, 2..=512)?;
+        count("sides", sides, 3..=super::FINEST)
     }
 
     /// Its surface. The vertices lie on the true tube.
@@ -47,19 +44,20 @@ impl Link {
     /// As [`Link::check`].
     pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
         self.check()?;
-        let sections = sections(self);
-        let mut vertices = Vec::with_capacity(sections.len() * self.sides as usize);
+        let (sections, sides) = (sections(self), self.sides);
+        let mut vertices = Vec::with_capacity(sections.len() * sides as usize);
         for (middle, outward) in &sections {
-            for side in 0..self.sides {
-                let turn = on_circle(side, self.sides) * f64::from(self.tube_radius);
-                vertices.push((*middle + *outward * turn.x + DVec3::Y * turn.y).as_vec3());
+            for side in 0..sides {
+                let (sin, cos) = libm::sincos(TAU * f64::from(side) / f64::from(sides));
+                let across = (*outward * cos + DVec3::Y * sin) * f64::from(self.tube_radius);
+                vertices.push((*middle + across).as_vec3());
             }
         }
         let rounds = sections.len() as u32;
-        let at = |section: u32, side: u32| (section % rounds) * self.sides + side % self.sides;
+        let at = |section: u32, side: u32| (section % rounds) * sides + side % sides;
         let mut triangles = Vec::with_capacity(2 * vertices.len());
         for i in 0..rounds {
-            for j in 0..self.sides {
+            for j in 0..sides {
                 let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
                 triangles.extend([[a, b, c], [a, c, d]]);
             }
@@ -97,14 +95,12 @@ fn sections(link: &Link) -> Vec<(DVec3, DVec3)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Mesh;
 
     #[test]
     fn links_are_closed_and_have_the_volume_of_their_tube() {
         for straight in [0.0, 0.01, 0.5] {
             let made = Link { radius: 0.2, straight, tube_radius: 0.05, bend_parts: 24, sides: 24 };
-            let list = made.triangles().unwrap();
-            let mesh = Mesh::new(list.vertices, list.triangles).unwrap();
+            let mesh = made.triangles().unwrap().mesh().unwrap();
             assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             let volume: f32 = (0..mesh.triangles.len())
                 .map(|i| {
@@ -124,8 +120,8 @@ mod tests {
     #[test]
     fn refuse_what_cannot_be() {
         let fine = Link { radius: 0.2, straight: 0.1, tube_radius: 0.05, bend_parts: 12, sides: 12 };
-        assert_eq!((Link { radius: 0.05, ..fine }).check().unwrap_err().field, "radius");
-        assert_eq!((Link { straight: -1.0, ..fine }).check().unwrap_err().field, "straight");
-        assert_eq!((Link { bend_parts: 1, ..fine }).check().unwrap_err().field, "bend_parts");
+        assert_eq!(Link { radius: 0.05, ..fine }.check().unwrap_err().field, "tube_radius");
+        assert_eq!(Link { straight: -1.0, ..fine }.check().unwrap_err().field, "straight");
+        assert_eq!(Link { bend_parts: 1, ..fine }.check().unwrap_err().field, "bend_parts");
     }
 }

@@ -1,12 +1,12 @@
 //! Meshes from formulas, for scenes, tests and play.
 //!
-//! Promise: closed, wound counter-clockwise seen from outside, nothing for [`Mesh::new`] to mend; no surface cuts itself, and no triangle is a
+//! Promise: closed (but for [`Terrain`]), wound counter-clockwise seen from outside, nothing for [`Mesh::new`] to mend; no surface cuts itself, and no triangle is a
 //! sliver where the parameters suit each other. All are centred on the origin unless they say otherwise. Counts out of range, and
 //! lengths that do not go together, are errors that name the parameter.
 
 use std::ops::RangeInclusive;
 
-use super::{Mesh, ShapeError};
+use super::{Mesh, ShapeError, positive};
 
 mod ball;
 mod bowl;
@@ -21,6 +21,7 @@ mod outline;
 mod revolution;
 mod surface;
 mod surface_net;
+mod terrain;
 mod thread;
 
 pub use ball::{Ball, ball};
@@ -33,6 +34,7 @@ pub use letter::Letter;
 pub use link::Link;
 pub use mug::Mug;
 pub use revolution::{Torus, ring, torus};
+pub use terrain::Terrain;
 pub use thread::{Bolt, Grip, Nut, Thread};
 
 /// Most segments or sides that a maker accepts.
@@ -52,6 +54,20 @@ fn below(field: &'static str, value: f32, limit: f32, what: &str) -> Result<(), 
         Ok(())
     } else {
         Err(ShapeError::new(field, format!("must be above 0 and below {what} ({limit}), is {value}")))
+    }
+}
+
+/// Two lengths, the first above the second and the second above 0.
+fn larger(
+    (field, value): (&'static str, f32),
+    (other, limit): (&'static str, f32),
+) -> Result<(), ShapeError> {
+    positive(other, limit)?;
+    positive(field, value)?;
+    if value > limit {
+        Ok(())
+    } else {
+        Err(ShapeError::new(field, format!("must be above {other} ({limit}), is {value}")))
     }
 }
 

@@ -5,16 +5,16 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::surface::{Surface, on_circle};
-use super::{FINEST, Mesh, ShapeError, count};
+use super::{FINEST, Mesh, ShapeError, count, larger};
 use crate::shape::{TriangleList, positive};
 
 /// A torus about the y axis. Has 2 `segments` `sides` triangles; its vertices lie on the true torus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus {
-    /// From the axis to the middle of the tube. Metres, above `minor`.
-    pub major: f32,
+    /// From the axis to the middle of the tube. Metres, above `tube_radius`.
+    pub radius: f32,
     /// Radius of the tube. Metres, above 0.
-    pub minor: f32,
+    pub tube_radius: f32,
     /// Points round the axis. 3 to 1024.
     pub segments: u32,
     /// Points round the tube. 3 to 1024.
@@ -27,13 +27,7 @@ impl Torus {
     /// # Errors
     /// When a parameter is out of its range.
     pub fn check(&self) -> Result<(), ShapeError> {
-        let (major, minor) = (self.major, self.minor);
-        if !(minor > 0.0 && minor < major && major.is_finite()) {
-            return Err(ShapeError::new(
-                "minor",
-                format!("must be above 0 and below major, is {minor} with major {major}"),
-            ));
-        }
+        larger(("radius", self.radius), ("tube_radius", self.tube_radius))?;
         count("segments", self.segments, 3..=FINEST)?;
         count("sides", self.sides, 3..=FINEST)
     }
@@ -44,20 +38,20 @@ impl Torus {
     /// As [`Torus::check`].
     pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
         self.check()?;
-        let middle = DVec2::new(self.major.into(), 0.0);
-        let on_tube = |i| middle + f64::from(self.minor) * on_circle(i, self.sides);
+        let middle = DVec2::new(self.radius.into(), 0.0);
+        let on_tube = |i| middle + f64::from(self.tube_radius) * on_circle(i, self.sides);
         let section: Vec<DVec2> = (0..self.sides).map(on_tube).collect();
         Ok(revolve(&section, self.segments))
     }
 }
 
-/// A [`Torus`] about the y axis: `major` from its centre to the middle of the tube, `minor` the tube's radius (metres); `segments` round
+/// A [`Torus`] about the y axis: `radius` from its centre to the middle of the tube, and the tube's own (metres); `segments` round
 /// the axis, `sides` round the tube.
 ///
 /// # Errors
-/// When not 0 < `minor` < `major`, or a count is not from 3 to 1024.
-pub fn torus(major: f32, minor: f32, segments: u32, sides: u32) -> Result<Mesh, ShapeError> {
-    Ok(Torus { major, minor, segments, sides }.triangles()?.mesh()?)
+/// When not 0 < `tube_radius` < `radius`, or a count is not from 3 to 1024.
+pub fn torus(radius: f32, tube_radius: f32, segments: u32, sides: u32) -> Result<Mesh, ShapeError> {
+    Ok(Torus { radius, tube_radius, segments, sides }.triangles()?.mesh()?)
 }
 
 /// A ring of rectangular section about the y axis, like a washer or a pipe: radii and half height in metres. Has 8 `segments`

@@ -16,6 +16,7 @@ const MUG: Mug =
 const GEAR: Gear = Gear { teeth: 18, module: 0.1, half_width: 0.15, bore: 0.3 };
 const CHAIR: Chair = Chair { width: 0.5, depth: 0.45, seat_height: 0.45, height: 0.95, bar: 0.05 };
 const JACK: Jack = Jack { reach: 0.5, arm_radius: 0.07, knob_radius: 0.12, cells: 28 };
+const TERRAIN: Terrain = Terrain { half_width: 10.0, height: 2.0, hill: 5.0, cells: 40, seed: 1 };
 const TREFOIL: TorusKnot =
     TorusKnot { p: 2, q: 3, radius: 0.5, winding_radius: 0.22, tube_radius: 0.1, segments: 256, sides: 32 };
 
@@ -24,7 +25,7 @@ fn letter(letter: char) -> TriangleList {
 }
 
 fn all() -> Vec<(String, TriangleList)> {
-    let torus = Torus { major: 0.4, minor: 0.2, segments: 48, sides: 16 };
+    let torus = Torus { radius: 0.4, tube_radius: 0.2, segments: 48, sides: 16 };
     let mut made = vec![
         ("torus".to_owned(), torus.triangles().unwrap()),
         ("ball".to_owned(), Ball { radius: 0.5, parts: 12 }.triangles().unwrap()),
@@ -269,8 +270,24 @@ fn a_jack_has_the_volume_of_its_field() {
 }
 
 #[test]
+fn a_terrain_faces_up_stays_between_its_heights_and_does_not_jump() {
+    let list = TERRAIN.triangles().unwrap();
+    assert_eq!((list.vertices.len(), list.triangles.len()), (41 * 41, 2 * 40 * 40));
+    let heights = || list.vertices.iter().map(|v| v.y);
+    assert!(heights().all(|y| (0.0..=2.0).contains(&y)));
+    assert!(heights().fold(0.0, f32::max) - heights().fold(2.0, f32::min) > 0.8, "hills");
+    for triangle in &list.triangles {
+        let [a, b, c] = triangle.map(|i| list.vertices[i as usize]);
+        let normal = (b - a).cross(c - a).normalize();
+        assert!(normal.y > 0.5, "{normal}");
+    }
+    let other = Terrain { seed: 2, ..TERRAIN }.triangles().unwrap();
+    assert!(list.vertices.iter().zip(&other.vertices).any(|(a, b)| (a.y - b.y).abs() > 0.5));
+}
+
+#[test]
 fn refuse_what_cannot_be() {
-    assert_eq!(torus(0.2, 0.4, 48, 16).unwrap_err().field, "minor");
+    assert_eq!(torus(0.2, 0.4, 48, 16).unwrap_err().field, "radius");
     assert_eq!(torus(0.4, 0.2, 2, 16).unwrap_err().field, "segments");
     assert_eq!(frame(Vec3::ONE, 1.0).unwrap_err().field, "width");
     assert_eq!(angle(1.0, f32::NAN, 0.1).unwrap_err().field, "width");
@@ -291,4 +308,5 @@ fn refuse_what_cannot_be() {
     assert_eq!(field(Letter { letter: 'F', height: 1.0, depth: 11.0 }.triangles()), "depth");
     assert_eq!(field(Jack { arm_radius: 0.2, ..JACK }.triangles()), "arm_radius");
     assert_eq!(field(Jack { cells: 16, ..JACK }.triangles()), "cells");
+    assert_eq!(field(Terrain { hill: 30.0, ..TERRAIN }.triangles()), "hill");
 }

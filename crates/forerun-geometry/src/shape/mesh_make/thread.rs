@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::{count, surface};
+use super::count;
 use crate::shape::{ShapeError, TriangleList, positive};
 
 /// Least and most columns of points round the axis. The corners of a hexagon are in every sixth part of them.
@@ -134,17 +134,26 @@ const BEFORE: i64 = -1_000_000;
 const BEHIND: i64 = 1_000_000;
 
 impl Bolt {
+    /// Whether it can be made.
+    ///
+    /// # Errors
+    /// When a parameter is out of its range.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        self.thread.check()?;
+        columns(self.segments)?;
+        within("length", self.length, (self.thread.pitch, f32::MAX), "at least a pitch")?;
+        positive("head_height", self.head_height)?;
+        let least = self.thread.radius;
+        within("head_radius", self.head_radius, (least, f32::MAX), "above the radius of the thread")
+    }
+
     /// Its surface. Both its crest and its root lie on the true thread at the columns, and within it between them.
     ///
     /// # Errors
-    /// When a length is out of the range given with its field.
+    /// As [`Bolt::check`].
     pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
+        self.check()?;
         let Bolt { thread, length, head_radius, head_height, head, segments } = *self;
-        thread.check()?;
-        columns(segments)?;
-        within("length", length, (thread.pitch, f32::MAX), "at least a pitch")?;
-        positive("head_height", head_height)?;
-        within("head_radius", head_radius, (thread.radius, f32::MAX), "above the radius of the thread")?;
         let [length, pitch, top] = [length, thread.pitch, head_height].map(f64::from);
         let tip = f64::from(thread.radius) - (DEPTH + CHAMFER) * pitch;
         let columns = (0..segments).map(|k| {
@@ -158,33 +167,47 @@ impl Bolt {
         let mut surface = Surface::of(columns.collect());
         surface.cap(-length, End::First);
         surface.cap(top, End::Last);
-        Ok(surface.finish())
+        Ok(surface.triangles())
     }
 }
 
 impl Nut {
+    /// Whether it can be made.
+    ///
+    /// # Errors
+    /// When a parameter is out of its range.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        self.thread.check()?;
+        columns(self.segments)?;
+        within("clearance", self.clearance, (0.0, f32::MAX), "0 or more")?;
+        within("height", self.height, (self.thread.pitch, f32::MAX), "at least a pitch")?;
+        let least = (self.mouth() * self.chord()) as f32;
+        within("outer_radius", self.outer_radius, (least, f32::MAX), "outside of the thread and its chamfer")
+    }
+
+    /// Radius at the mouths of the thread. Metres.
+    fn mouth(&self) -> f64 {
+        f64::from(self.thread.radius) + f64::from(self.clearance) + CHAMFER * f64::from(self.thread.pitch)
+    }
+
+    /// Between columns a chord is nearer to the axis than its ends: so much farther out are these.
+    fn chord(&self) -> f64 {
+        1.0 / libm::cos(0.5 * TAU / f64::from(self.segments))
+    }
+
     /// Its surface. No part of it is nearer to the axis than its true thread.
     ///
     /// # Errors
-    /// When a length is out of the range given with its field.
+    /// As [`Nut::check`].
     pub fn triangles(&self) -> Result<TriangleList, ShapeError> {
-        let Nut { thread, clearance, height, outer_radius, outside, segments } = *self;
-        thread.check()?;
-        columns(segments)?;
-        within("clearance", clearance, (0.0, f32::MAX), "0 or more")?;
-        within("height", height, (thread.pitch, f32::MAX), "at least a pitch")?;
-        let [pitch, clearance, half] =
-            [f64::from(thread.pitch), f64::from(clearance), 0.5 * f64::from(height)];
-        let mouth = f64::from(thread.radius) + clearance + CHAMFER * pitch;
-        // Between the columns a chord is nearer to the axis than its ends.
-        let sagitta = 1.0 / libm::cos(0.5 * TAU / f64::from(segments));
-        let least = (mouth * sagitta) as f32;
-        within("outer_radius", outer_radius, (least, f32::MAX), "outside of the thread and its chamfer")?;
-        let columns = (0..segments).map(|k| {
+        self.check()?;
+        let (mouth, chord) = (self.mouth(), self.chord());
+        let [clearance, half] = [self.clearance, 0.5 * self.height].map(f64::from);
+        let columns = (0..self.segments).map(|k| {
             let widened =
-                |radius: f64, height: f64| (radius + clearance).max(mouth - (half - height.abs())) * sagitta;
-            let mut column = threaded(&thread, (k, segments), (-half, half), widened);
-            let rim = f64::from(outer_radius) * outside.outline(k, segments);
+                |radius: f64, height: f64| (radius + clearance).max(mouth - (half - height.abs())) * chord;
+            let mut column = threaded(&self.thread, (k, self.segments), (-half, half), widened);
+            let rim = f64::from(self.outer_radius) * self.outside.outline(k, self.segments);
             column.push(Point { number: BEHIND + 1, at: DVec2::new(rim, half) });
             column.push(Point { number: BEHIND + 2, at: DVec2::new(rim, -half) });
             column
@@ -192,7 +215,7 @@ impl Nut {
         let mut surface = Surface::of(columns.collect());
         surface.close();
         surface.turn();
-        Ok(surface.finish())
+        Ok(surface.triangles())
     }
 }
 
@@ -257,8 +280,8 @@ impl Surface {
         }
         for k in 0..count {
             let next = (k + 1) % count;
-            // A turn later the helix is a pitch higher: the same point has the number of one turn less.
-            let turned = if next == 0 { PROFILE.len() as i64 } else { 0 };
+            // A turn on, the helix is a pitch higher: what was a number there is one of the turn before.
+            let turned = if next == 0 { -(PROFILE.len() as i64) } else { 0 };
             strip(&surface.columns[k], &surface.columns[next], turned, &mut surface.triangles);
         }
         surface
@@ -292,14 +315,9 @@ impl Surface {
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
 
-    /// The triangles; what meets in the middle of an end is one vertex.
-    fn finish(self) -> TriangleList {
-        let mut welded = surface::Surface::default();
-        let index: Vec<u32> = self.vertices.iter().map(|v| welded.vertex(v.as_vec3())).collect();
-        for corners in self.triangles {
-            welded.triangle(corners.map(|i| index[i as usize]));
-        }
-        welded.finish()
+    fn triangles(self) -> TriangleList {
+        let vertices = self.vertices.iter().map(|v| v.as_vec3()).collect();
+        TriangleList { vertices, triangles: self.triangles }
     }
 }
 
@@ -348,14 +366,9 @@ fn within(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Mesh;
+    use crate::shape::{MeshDraft, MeshOptions};
 
     const THREAD: Thread = Thread { radius: 0.005, pitch: 0.0015 };
-
-    fn mesh(list: Result<TriangleList, ShapeError>) -> Mesh {
-        let TriangleList { vertices, triangles } = list.unwrap();
-        Mesh::new(vertices, triangles).unwrap()
-    }
 
     fn any_bolt(head: Grip) -> Bolt {
         Bolt { thread: THREAD, length: 0.02, head_radius: 0.008, head_height: 0.006, head, segments: 48 }
@@ -365,13 +378,12 @@ mod tests {
         Nut { thread: THREAD, clearance: 0.0001, height: 0.008, outer_radius: 0.008, outside, segments: 48 }
     }
 
-    fn volume(mesh: &Mesh) -> f64 {
-        (0..mesh.triangles.len())
-            .map(|i| {
-                let [a, b, c] = mesh.corners(i).map(|v| v.as_dvec3());
-                a.dot(b.cross(c)) / 6.0
-            })
-            .sum()
+    fn corners(list: &TriangleList) -> impl Iterator<Item = [DVec3; 3]> {
+        list.triangles.iter().map(|t| t.map(|i| list.vertices[i as usize].as_dvec3()))
+    }
+
+    fn volume(list: &TriangleList) -> f64 {
+        corners(list).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
     }
 
     /// Mean of the square of the radius over a pitch, by a formula of its own: flat crest (1/8), flat root (1/4), flanks between.
@@ -383,7 +395,11 @@ mod tests {
     #[test]
     fn bolts_and_nuts_are_closed_and_outwards_without_repairs() {
         for grip in [Grip::Hexagonal, Grip::Round] {
-            for mesh in [mesh(any_bolt(grip).triangles()), mesh(any_nut(grip).triangles())] {
+            for list in [any_bolt(grip).triangles().unwrap(), any_nut(grip).triangles().unwrap()] {
+                // Coarse: the field does not matter here.
+                let options = MeshOptions { cell: Some(0.001), ..MeshOptions::default() };
+                let draft = MeshDraft::new(list.vertices, list.triangles, options).unwrap();
+                let mesh = draft.bake(&|_, _| {}).unwrap();
                 assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
             }
         }
@@ -394,28 +410,35 @@ mod tests {
         // A regular polygon of n corners has this part of its circle's area.
         let polygon = 48.0 / TAU * (TAU / 48.0).sin();
         let circle = std::f64::consts::PI;
-        let made = volume(&mesh(any_bolt(Grip::Round).triangles()));
+        let made = volume(&any_bolt(Grip::Round).triangles().unwrap());
         let shank = circle * polygon * mean_square(0.005) * 0.02;
         let head = circle * polygon * 0.008 * 0.008 * 0.006;
         // The chamfer takes a little off the last pitch.
         assert!((0.985..1.0).contains(&(made / (shank + head))), "{}", made / (shank + head));
-        let made = volume(&mesh(any_nut(Grip::Hexagonal).triangles()));
+        let made = volume(&any_nut(Grip::Hexagonal).triangles().unwrap());
         let outside = 2.0 * 3.0_f64.sqrt() * 0.008 * 0.008 * 0.008;
         let hole = circle * polygon / (0.5 * TAU / 48.0).cos().powi(2) * mean_square(0.0051) * 0.008;
         assert!((0.985..1.0).contains(&(made / (outside - hole))), "{}", made / (outside - hole));
     }
 
     #[test]
-    fn every_vertex_of_the_shank_lies_on_the_true_thread_or_under_the_chamfer() {
-        let mesh = mesh(any_bolt(Grip::Round).triangles());
+    fn triangles_lie_on_the_true_thread_all_round() {
+        // From column to column an arc of 5 mm radius rises by this much over its chord.
+        let sagitta = 0.005 * (1.0 - (0.5 * TAU / 48.0).cos());
+        let below_chamfer = |p: &DVec3| p.y > -0.018 && p.y < -1e-5;
         let mut met = 0;
-        for v in mesh.vertices.iter().map(|v| v.as_dvec3()).filter(|v| v.y < -1e-9) {
-            let (radius, angle) = (v.x.hypot(v.z), (-v.z).atan2(v.x));
-            let off = radius - THREAD.radius_at(angle, v.y);
-            assert!(off < 1e-8, "{off} at {v}");
-            met += u32::from(off.abs() < 1e-8);
+        for corners in corners(&any_bolt(Grip::Round).triangles().unwrap()) {
+            if !corners.iter().all(below_chamfer) || corners.iter().any(|p| p.x.hypot(p.z) > 0.0051) {
+                continue;
+            }
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            for p in corners.into_iter().chain([middle]) {
+                let off = p.x.hypot(p.z) - THREAD.radius_at((-p.z).atan2(p.x), p.y);
+                assert!(off < 1e-8 && off > -2.0 * sagitta, "{off} at {p}");
+            }
+            met += 1;
         }
-        assert!(met > 48 * 6 * 11, "{met} vertices on the thread");
+        assert!(met > 48 * 12 * 11, "{met} triangles of the thread");
     }
 
     #[test]
@@ -423,11 +446,22 @@ mod tests {
         // A quarter of a turn about +y, from +x to -z, raises the crest by a quarter of the pitch.
         let up = 0.25 * f64::from(THREAD.pitch);
         assert!((THREAD.radius_at(0.25 * TAU, up) - 0.005).abs() < 1e-9);
-        let mesh = mesh(any_bolt(Grip::Round).triangles());
+        let list = any_bolt(Grip::Round).triangles().unwrap();
         let crest = |v: &&crate::Vec3| v.y < -0.005 && (v.x.hypot(v.z) - 0.005).abs() < 1e-7;
-        let above_z = mesh.vertices.iter().filter(crest).find(|v| v.x.abs() < 1e-7 && v.z < 0.0).unwrap();
-        let phase = f64::from(above_z.y) / f64::from(THREAD.pitch) - 0.25;
+        let before = list.vertices.iter().filter(crest).find(|v| v.x.abs() < 1e-7 && v.z < 0.0).unwrap();
+        let phase = f64::from(before.y) / f64::from(THREAD.pitch) - 0.25;
         assert!((phase - phase.round()).abs() < 0.0626, "{phase}");
+    }
+
+    #[test]
+    fn a_nut_keeps_its_distance_from_the_bolt() {
+        for corners in corners(&any_nut(Grip::Round).triangles().unwrap()) {
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            for p in corners.into_iter().chain([middle]).filter(|p| p.y.abs() < 0.003) {
+                let gap = p.x.hypot(p.z) - THREAD.radius_at((-p.z).atan2(p.x), p.y);
+                assert!(gap > 0.000_099, "{gap} at {p}");
+            }
+        }
     }
 
     #[test]
@@ -435,19 +469,14 @@ mod tests {
         let refused = |change: fn(&mut Bolt)| {
             let mut made = any_bolt(Grip::Hexagonal);
             change(&mut made);
-            made.triangles().unwrap_err().field
+            made.check().unwrap_err().field
         };
         assert_eq!(refused(|b| b.segments = 50), "segments");
         assert_eq!(refused(|b| b.thread.pitch = 0.006), "pitch");
         assert_eq!(refused(|b| b.head_radius = f32::NAN), "head_radius");
         assert_eq!(refused(|b| b.length = 0.001), "length");
-        assert_eq!(
-            (Nut { outer_radius: 0.0052, ..any_nut(Grip::Round) }).triangles().unwrap_err().field,
-            "outer_radius"
-        );
-        assert_eq!(
-            (Nut { clearance: -0.1, ..any_nut(Grip::Round) }).triangles().unwrap_err().field,
-            "clearance"
-        );
+        let nut = any_nut(Grip::Round);
+        assert_eq!(Nut { outer_radius: 0.0052, ..nut }.check().unwrap_err().field, "outer_radius");
+        assert_eq!(Nut { clearance: -0.1, ..nut }.check().unwrap_err().field, "clearance");
     }
 }
