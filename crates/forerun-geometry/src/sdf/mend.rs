@@ -54,7 +54,7 @@ const BESIDE: f64 = 0.02;
 /// The same as part of the radius of the circle in the piece of wall: not to look past a corner.
 const BESIDE_PIECE: f64 = 0.1;
 /// Pieces that walls may be cut into, about.
-const PIECES_MAX: f64 = 262_144.0;
+const PIECES_MAX: f64 = 65_536.0;
 
 /// Areas of a triangle by what is on its sides. Square metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,10 +7,14 @@
 use crate::Vec3;
 use crate::shape::{Enclosure, Mesh};
 
+mod accuracy;
 pub(crate) mod bake;
+mod bake_blocks;
+mod blocks;
 mod crossing;
 pub(crate) mod eight;
 mod field;
+mod field_storage;
 pub(crate) mod kept;
 pub(crate) mod mend;
 pub(crate) mod moments;
@@ -20,6 +24,7 @@ pub(crate) mod pseudo_normals;
 pub(crate) mod samples;
 pub(crate) mod winding;
 
+pub use accuracy::{FieldError, Spread};
 pub use bake::BakeProgress;
 pub use field::Field;
 pub use kept::{BakeKey, KeptError};
