@@ -15,6 +15,7 @@ mod measure;
 mod mesh_run;
 mod meshes;
 mod native;
+mod nut;
 mod overlap;
 #[cfg(feature = "engines")]
 mod parts;

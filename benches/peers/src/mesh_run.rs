@@ -14,6 +14,7 @@ use crate::engine::{self, Engine, Motion};
 use crate::heap;
 use crate::links::{LinkCount, Links};
 use crate::measure::{Task, Times, on_its_threads, open};
+use crate::nut::{Nut, NutCount};
 use crate::overlap::TrueBodies;
 use crate::quality::{Meter, Own};
 use crate::shapes::{self, Fit};
@@ -65,6 +66,8 @@ pub(crate) struct Worth {
     pub(crate) not_finite: usize,
     /// Of scenes with rings.
     pub(crate) links: Option<LinkCount>,
+    /// Of a scene with a nut on a bolt.
+    pub(crate) nut: Option<NutCount>,
 }
 
 /// With what it is done.
@@ -81,7 +84,8 @@ pub(crate) fn run(task: &Task, extent: Extent, means: Means<'_>) -> Result<MeshA
     on_its_threads(task, || {
         let made = make(task, extent, means.folder)?;
         let Made { mut world, setup_ms, meshes, fit, heap_bytes } = made;
-        let (times, motions) = step(&mut *world, task.frames, means.limit)?;
+        let frames = if extent == Extent::HeapOfBoxes { 0 } else { task.frames };
+        let (times, motions) = step(&mut *world, frames, means.limit)?;
         drop(world);
         let worth = if extent == Extent::All { Some(worth(&open(&task.scene)?, &motions)?) } else { None };
         Ok(MeshAnswer { setup_ms, meshes, fit, heap_bytes, times, worth })
@@ -153,10 +157,14 @@ fn worth(scene: &Scene, motions: &[Vec<Motion>]) -> Result<Worth, String> {
     let stage = Stage::of(scene)?;
     let bodies = TrueBodies::of(&stage);
     let mut links = Links::of(scene, &stage);
+    let mut nut = Nut::of(scene, &stage);
     let mut meter = Meter::new(scene)?;
     let (mut overlap_max_m, mut overlap_end_m) = (0.0_f32, 0.0);
     for (frame, motions_now) in motions.iter().enumerate() {
         links.look_at(motions_now);
+        if let Some(nut) = &mut nut {
+            nut.look_at(motions_now);
+        }
         let is_last = frame + 1 == motions.len();
         if is_last || frame.is_multiple_of(LOOK_EVERY) {
             overlap_end_m = bodies.deepest_m(motions_now);
@@ -174,5 +182,6 @@ fn worth(scene: &Scene, motions: &[Vec<Motion>]) -> Result<Worth, String> {
         lost: if let Own::Lost { count } = at_end.own { count } else { 0 },
         not_finite: at_end.not_finite,
         links: links.finish(),
+        nut: nut.map(|nut| nut.finish()),
     })
 }

@@ -192,6 +192,9 @@ fn ratio(row: &Row, ours: &Measured, rows: &[Row]) -> Option<f64> {
 /// What became of the scene, in words.
 fn outcome(worth: &Worth) -> String {
     let mut words = worth.links.as_ref().map_or_else(Vec::new, of_links);
+    if let Some(nut) = worth.nut {
+        words.push(format!("{:.2} turns, {:.1} mm down", nut.turns, 1000.0 * nut.down_m));
+    }
     words.push(format!("{} lost", worth.lost));
     if worth.not_finite > 0 {
         words.push(format!("{} not finite", worth.not_finite));
@@ -229,6 +232,7 @@ mod tests {
             lost: 1,
             not_finite: 0,
             links: Some(LinkCount { rings: 9, linked: [8, 7], links_changed: 1, ..LinkCount::default() }),
+            nut: None,
         };
         let measured = Measured {
             setup_ms: 12.0,

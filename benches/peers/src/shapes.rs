@@ -6,7 +6,7 @@ use std::sync::Arc;
 use cpu_time::ProcessTime;
 use forerun::Shape;
 use forerun::Vec3;
-use forerun::geometry::shape::Mesh;
+use forerun::geometry::shape::{Mesh, MeshDraft};
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{self, Kind};
@@ -53,7 +53,8 @@ pub(crate) fn prepare(
     }
     let start = ProcessTime::now();
     for (_, mesh) in meshes {
-        Mesh::new(mesh.vertices.clone(), mesh.triangles.clone()).map_err(|error| error.to_string())?;
+        let draft = MeshDraft::new(mesh.vertices.clone(), mesh.triangles.clone(), mesh.options());
+        draft.and_then(|draft| draft.bake(&|_, _| {})).map_err(|error| error.to_string())?;
     }
     Ok(1000.0 * start.elapsed().as_secs_f64())
 }
