@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::Field;
 use super::bake_blocks::bake_blocks;
-use super::blocks::BLOCK;
+use super::blocks::{BLOCK, NODES};
 use super::mend::Mended;
 use super::nearest::{Nearest, Skin, nearest};
 use super::winding::Winding;
@@ -170,7 +170,11 @@ fn in_blocks(
     if dense.cell() <= wished {
         return bake(Grid::of_blocks(mesh, wished), nodes);
     }
-    let mut finer = wished.max(FINEST * dense.cell());
+    // Finer blocks along the surface would be too many, by two layers of them.
+    let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.face_vector(t as u32).length()).sum();
+    let layers = 2.0 * area * (2 * NODES) as f64 / (2 * NODES_MAX) as f64;
+    let finest = layers.sqrt() as f32 / BLOCK as f32;
+    let mut finer = wished.max(finest).max(FINEST * dense.cell());
     while finer < FINER * dense.cell() {
         if let Some(field) = bake(Grid::of_blocks(mesh, finer), 2 * NODES_MAX) {
             return Some(field);

@@ -79,6 +79,7 @@ impl Blocks {
     }
 
     /// The cells of eight points. `at`: position along x, y and z in fine cells, within the grid.
+    #[allow(clippy::needless_range_loop, reason = "several short arrays are walked side by side")]
     #[inline(always)]
     pub(super) fn place(&self, at: [[f32; LANES]; 3]) -> BlockPlace {
         let first = self.coarse_nodes() as u32;

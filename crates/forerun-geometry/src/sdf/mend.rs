@@ -29,7 +29,7 @@ pub(crate) enum Verdict {
     /// What they are the surface of, all of them.
     Sound,
     /// What they are the surface of by and large.
-    Mended(Mended),
+    Mended(Box<Mended>),
     /// Nothing that one could tell.
     Hopeless,
 }
@@ -107,7 +107,7 @@ pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) 
     let vertices: Vec<Vec3> = surface.iter().flatten().map(|v| v.as_vec3()).collect();
     let triangles = (0..surface.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     let surface = Mesh::assemble(vertices, triangles);
-    Verdict::Mended(Mended { surface, gap: size, found, covered })
+    Verdict::Mended(Box::new(Mended { surface, gap: size, found, covered }))
 }
 
 /// Whether the areas of triangles, and of covers after the first `triangles`, are those of the surface of something, and what to say about it.
