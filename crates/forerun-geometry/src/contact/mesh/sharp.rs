@@ -21,10 +21,7 @@ impl Direction<'_> {
         }
         let reach = self.reach(points, F::zero()) + F::splat(self.blur + more);
         let asked = asked & distance.lt(reach).bits();
-        let mut exact = Exact {
-            distances: distance.to_array(),
-            gradients: vectors(gradient),
-        };
+        let mut exact = Exact { distances: distance.to_array(), gradients: vectors(gradient) };
         self.sharpen(&vectors(points), asked, &mut exact);
         (F::from_array(exact.distances), of_vectors(&exact.gradients).form())
     }
