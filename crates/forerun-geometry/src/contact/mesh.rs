@@ -14,6 +14,7 @@ mod directions;
 mod look_up;
 mod points;
 mod reduce;
+mod ridges;
 mod sharp;
 
 /// Points this near to the other surface count however they move; points farther away only if they will be as near as
@@ -48,6 +49,7 @@ pub(super) fn mesh_manifolds(first: &Placed, second: &Placed, margin: f32, out: 
     let mut candidates: Vec<Candidate> = Vec::new();
     for (index, direction) in directions.iter().enumerate() {
         look_up::find(direction, index, &mut candidates);
+        ridges::find(direction, index, &mut candidates);
     }
     reduce::reduce(&mut candidates, &directions, out);
 }

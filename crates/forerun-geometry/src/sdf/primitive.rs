@@ -26,6 +26,9 @@ pub(crate) enum Surface<'a> {
     Sheet(Skin<'a>, f32),
 }
 
+/// The bits of all eight points.
+const ALL: u32 = (1 << WIDTH) - 1;
+
 impl Surface<'_> {
     /// Signed distance (metres) and gradient at eight points. Gradients are not quite unit.
     #[inline]
@@ -42,7 +45,16 @@ impl Surface<'_> {
             Surface::Cylinder(c) => cylinder(p, *c),
             Surface::Hull(planes) => hull(p, planes),
             Surface::Field(field) => field.look_up(p),
-            Surface::Sheet(skin, depth_limit) => sheet(p, skin, *depth_limit),
+            Surface::Sheet(skin, depth_limit) => sheet(p, skin, *depth_limit, ALL),
+        }
+    }
+
+    /// [`Surface::look_up`] where only some of eight points are asked for; the answers for the others say nothing.
+    #[inline]
+    pub(crate) fn look_up_some(&self, p: Lanes3, asked: u32) -> (Lanes, Lanes3) {
+        match self {
+            Surface::Sheet(skin, depth_limit) => sheet(p, skin, *depth_limit, asked),
+            _ => self.look_up(p),
         }
     }
 
@@ -159,10 +171,10 @@ pub(crate) fn hull_planes(hull: &Hull) -> Vec<(Vec3, f32)> {
     faces.chain(edges).collect()
 }
 
-fn sheet(p: Lanes3, skin: &Skin<'_>, depth_limit: f32) -> (Lanes, Lanes3) {
+fn sheet(p: Lanes3, skin: &Skin<'_>, depth_limit: f32, asked: u32) -> (Lanes, Lanes3) {
     let mut distance = Lanes::splat(f32::INFINITY);
     let mut gradient = Lanes3::splat(Vec3::Y);
-    for i in 0..WIDTH {
+    for i in (0..WIDTH).filter(|i| asked >> i & 1 == 1) {
         let signed = skin.look_up(p.lane(i));
         // Behind a boundary edge is beside the sheet; far behind the sheet is under a bridge.
         let lost = signed.on_boundary || signed.distance < -f64::from(depth_limit);

@@ -62,9 +62,11 @@ pub(crate) struct Spheres {
 impl Samples {
     /// Sorts the samples into the hierarchy.
     pub(crate) fn new(mut samples: Vec<Sample>) -> Samples {
-        sort_by_place(&mut samples);
+        sort_by_place(&mut samples, |s| s.point);
         let leaves: Vec<&[Sample]> = samples.chunks(WIDTH).collect();
-        let nodes: Vec<&[Sample]> = samples.chunks(WIDTH * WIDTH).collect();
+        let points: Vec<Vec3> = samples.iter().map(|s| s.point).collect();
+        let of_leaves: Vec<&[Vec3]> = points.chunks(WIDTH).collect();
+        let of_nodes: Vec<&[Vec3]> = points.chunks(WIDTH * WIDTH).collect();
         Samples {
             points: leaves.iter().map(|leaf| block_of(leaf, |s| s.point)).collect(),
             normals: leaves.iter().map(|leaf| block_of(leaf, |s| s.normal)).collect(),
@@ -72,8 +74,8 @@ impl Samples {
                 .iter()
                 .map(|leaf| Lanes(std::array::from_fn(|i| leaf[i.min(leaf.len() - 1)].facing_max)))
                 .collect(),
-            leaves: leaves.chunks(WIDTH).map(Spheres::around).collect(),
-            nodes: nodes.chunks(WIDTH).map(Spheres::around).collect(),
+            leaves: of_leaves.chunks(WIDTH).map(Spheres::around).collect(),
+            nodes: of_nodes.chunks(WIDTH).map(Spheres::around).collect(),
             count: samples.len(),
         }
     }
@@ -129,14 +131,14 @@ impl Samples {
 }
 
 impl Spheres {
-    /// The spheres around up to eight groups of samples.
-    fn around(groups: &[&[Sample]]) -> Spheres {
+    /// The spheres around up to eight groups of points.
+    pub(super) fn around<P: AsRef<[Vec3]>>(groups: &[P]) -> Spheres {
         let mut spheres = Spheres { centre: Lanes3::ZERO, radius: Lanes::splat(f32::NEG_INFINITY) };
-        for (i, group) in groups.iter().enumerate() {
-            let min = group.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
-            let max = group.iter().fold(Vec3::NEG_INFINITY, |m, s| m.max(s.point));
+        for (i, group) in groups.iter().map(AsRef::as_ref).enumerate() {
+            let min = group.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
+            let max = group.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
             let centre = (min + max) * 0.5;
-            let radius = group.iter().fold(0.0_f32, |r, s| r.max(s.point.distance(centre)));
+            let radius = group.iter().fold(0.0_f32, |r, p| r.max(p.distance(centre)));
             spheres.centre.set_lane(i, centre);
             // A little more, for what the sums below may lose.
             spheres.radius.0[i] = radius * 1.0001 + 1e-6;
@@ -153,24 +155,24 @@ fn block_of(leaf: &[Sample], part: impl Fn(&Sample) -> Vec3) -> Lanes3 {
     block
 }
 
-/// Sorts samples so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
-fn sort_by_place(samples: &mut [Sample]) {
-    if samples.len() <= WIDTH {
+/// Sorts things at places so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
+pub(super) fn sort_by_place<T>(things: &mut [T], place: fn(&T) -> Vec3) {
+    if things.len() <= WIDTH {
         return;
     }
-    let min = samples.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
-    let max = samples.iter().fold(Vec3::NEG_INFINITY, |m, s| m.max(s.point));
+    let min = things.iter().fold(Vec3::INFINITY, |m, t| m.min(place(t)));
+    let max = things.iter().fold(Vec3::NEG_INFINITY, |m, t| m.max(place(t)));
     let axis = (max - min).max_position();
-    let key = |s: &Sample| [s.point[axis], s.point[(axis + 1) % 3], s.point[(axis + 2) % 3]];
-    samples.sort_by(|a, b| {
+    let key = |t: &T| [0, 1, 2].map(|k| place(t)[(axis + k) % 3]);
+    things.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
     });
-    let leaf_or_node = if samples.len() > WIDTH * WIDTH { WIDTH * WIDTH } else { WIDTH };
-    let half = (samples.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
-    let (low, high) = samples.split_at_mut(half);
-    sort_by_place(low);
-    sort_by_place(high);
+    let leaf_or_node = if things.len() > WIDTH * WIDTH { WIDTH * WIDTH } else { WIDTH };
+    let half = (things.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
+    let (low, high) = things.split_at_mut(half);
+    sort_by_place(low, place);
+    sort_by_place(high, place);
 }
 
 #[cfg(test)]

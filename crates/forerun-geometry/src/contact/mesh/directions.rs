@@ -1,30 +1,38 @@
 //! Directions: whose points are looked up in whose field.
 
+use std::borrow::Cow;
+
 use glam::Mat3;
 
 use super::{MOTION_AHEAD, NEAR};
 use crate::contact::Placed;
 use crate::sdf::Samples;
+use crate::sdf::blur::Blur;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
+use crate::sdf::ridges::Ridges;
 use crate::shape::Mesh;
 use crate::{Pose, Shape, Vec3};
 
 use super::points::{self, Region, RoundPoint};
 
-/// See [`Direction::inset`]; as part of half the thickness of the shape.
+/// See [`Direction::inset`]; as part of half the thickness of the thinner shape.
 const INSET_PART: f32 = 0.25;
 
 /// Points of one shape to be looked up in the field of another.
 pub(super) struct Direction<'a> {
     /// The points, in their own frame.
     pub(super) points: Points<'a>,
+    /// Long edges of the same shape.
+    pub(super) ridges: Cow<'a, Ridges>,
     /// What they are looked up in.
     pub(super) surface: Surface<'a>,
     /// The triangles of the surface if it is a mesh.
     pub(super) skin: Option<Skin<'a>>,
-    /// By how much the surface may take edges and corners to be farther away than they are. Metres.
-    pub(super) blur: f32,
+    /// Where the field blurs the edges of the surface.
+    pub(super) blur: Option<&'a Blur>,
+    /// By how much the field may take them to be farther away than they are. Metres.
+    pub(super) blur_depth: f32,
     /// From the frame of the points to that of the field: rotation.
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
@@ -70,18 +78,21 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
     let to_field = field.pose.inverse() * sampled.pose;
     let surface = surface_of(field.shape, 2.0 * sampled.shape.half_thickness())?;
     let (skin, blur) = match field.shape {
-        Shape::Mesh(mesh) => (Some(Skin::of(mesh)), mesh.collider().blur),
-        _ => (None, 0.0),
+        Shape::Mesh(mesh) => (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.is_any())),
+        _ => (None, None),
     };
-    let points = match (sampled.shape, field.shape) {
-        (Shape::Mesh(mesh), _) => Points::Mesh(&mesh.collider().samples),
+    let (points, ridges) = match (sampled.shape, field.shape) {
+        (Shape::Mesh(mesh), _) => {
+            (Points::Mesh(&mesh.collider().samples), Cow::Borrowed(&mesh.collider().ridges))
+        }
         (shape, Shape::Mesh(mesh)) => {
             let region = region_of(mesh, &to_field.inverse(), margin);
             let gradient = |p: Vec3| {
                 let (_, g) = surface.exact(to_field.transform_point(p), None, &mut None);
                 to_field.inverse_transform_vector(g)
             };
-            points::of(shape, &region, gradient)?
+            let (points, ridges) = points::of(shape, &region, gradient)?;
+            (points, Cow::Owned(ridges))
         }
         _ => return None,
     };
@@ -93,9 +104,11 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
     let into_field = |v: Vec3| field.pose.inverse_transform_vector(v) * MOTION_AHEAD;
     Some(Direction {
         points,
+        ridges,
         surface,
         skin,
         blur,
+        blur_depth: blur.map_or(0.0, |b| b.depth),
         axes: to_field.axes(),
         origin: to_field.position,
         field_pose: field.pose,
@@ -103,7 +116,7 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         drift: into_field(drift),
         spin: into_field(spin),
         sign,
-        inset: INSET_PART * sampled.shape.half_thickness(),
+        inset: INSET_PART * sampled.shape.half_thickness().min(field.shape.half_thickness()),
         near: NEAR.min(margin),
         margin,
     })

@@ -3,6 +3,7 @@
 use super::Candidate;
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
+use super::sharp::Answer;
 use crate::Vec3;
 use crate::sdf::lanes::{Lanes, Lanes3, WIDTH};
 use crate::sdf::primitive::Surface;
@@ -22,20 +23,20 @@ const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
 const BESIDE: f32 = 0.005;
 
 /// Points with their outward normals, in the field's frame.
-struct Eight {
-    points: Lanes3,
-    outwards: Lanes3,
+pub(super) struct Eight {
+    pub(super) points: Lanes3,
+    pub(super) outwards: Lanes3,
     /// See [`Sample::facing_max`](crate::sdf::Sample::facing_max).
-    facing_max: Lanes,
+    pub(super) facing_max: Lanes,
 }
 
 /// What the field says to them.
-struct Answers {
-    distance: Lanes,
-    normal: Lanes3,
+pub(super) struct Answers {
+    pub(super) distance: Lanes,
+    pub(super) normal: Lanes3,
     /// The bits of the points that are candidates.
-    found: u32,
-    /// The bits of those near or inside the surface that do not face it well.
+    pub(super) found: u32,
+    /// The bits of those near or inside the surface that do not face it well, or are next to its edges.
     doubtful: u32,
     /// Where it was asked; see [`Direction::meet`].
     inset: f32,
@@ -64,17 +65,30 @@ impl Direction<'_> {
                     outwards: normals.transformed(&self.axes, Vec3::ZERO),
                     facing_max: *facing_max,
                 };
-                let mut there = self.meet(&eight, 0.0, meant);
-                if there.doubtful != 0 && self.inset > 0.0 {
-                    let mut inside = self.meet(&eight, self.inset, there.doubtful);
-                    // Better than an answer that is good enough is only one without doubt.
-                    inside.found &= !inside.doubtful | !there.found;
-                    there.found &= !inside.found;
-                    self.push(&eight, &inside, index, candidates);
-                }
-                self.push(&eight, &there, index, candidates);
+                self.find_eight(&eight, [meant, 0], index, candidates);
             },
         );
+    }
+
+    /// Appends those of eight points that are meant and near; the second bits are those of points that are to be doubted.
+    #[inline(always)]
+    pub(super) fn find_eight(
+        &self,
+        eight: &Eight,
+        [meant, doubted]: [u32; 2],
+        index: usize,
+        candidates: &mut Vec<Candidate>,
+    ) {
+        let mut there = self.meet(eight, 0.0, meant);
+        there.doubtful |= doubted & there.found;
+        if there.doubtful != 0 && self.inset > 0.0 {
+            let mut inside = self.meet(eight, self.inset, there.doubtful);
+            // Better than an answer that is good enough is only one without doubt.
+            inside.found &= !inside.doubtful | !there.found;
+            there.found &= !inside.found;
+            self.push(eight, &inside, index, candidates);
+        }
+        self.push(eight, &there, index, candidates);
     }
 
     /// What the field says to some of eight points, asked `inset` metres further inside their own surface.
@@ -82,9 +96,13 @@ impl Direction<'_> {
     /// There the face that the points have come through is the nearest one even for the corners of a box that stands
     /// exactly on another of the same size. The answer is carried back to the points along the normal found.
     #[inline(always)]
-    fn meet(&self, eight: &Eight, inset: f32, asked: u32) -> Answers {
+    pub(super) fn meet(&self, eight: &Eight, inset: f32, asked: u32) -> Answers {
         let back = eight.outwards.scaled(Lanes::splat(inset));
-        let (distance, gradient) = self.answer(eight.points.minus(back), asked, inset);
+        let Answer { distance, gradient, beside } = if inset > 0.0 {
+            self.answer_inside(eight, back, asked)
+        } else {
+            self.answer(eight.points, asked)
+        };
         let normal = gradient.normalized();
         let distance = distance + normal.dot(back);
         let near = asked & distance.below(Lanes::splat(self.margin)).bits();
@@ -99,12 +117,18 @@ impl Direction<'_> {
             & Lanes::splat(GRADIENT_SQUARED_MIN).below(gradient.dot(gradient)).bits();
         let doubtful = near
             & distance.below(Lanes::splat(BESIDE)).bits()
-            & !facing.below(Lanes::splat(FACING_WELL)).bits();
+            & (beside | !facing.below(Lanes::splat(FACING_WELL)).bits());
         Answers { distance, normal, found, doubtful, inset }
     }
 
     #[inline(always)]
-    fn push(&self, eight: &Eight, answers: &Answers, index: usize, candidates: &mut Vec<Candidate>) {
+    pub(super) fn push(
+        &self,
+        eight: &Eight,
+        answers: &Answers,
+        index: usize,
+        candidates: &mut Vec<Candidate>,
+    ) {
         let mut found = answers.found;
         while found != 0 {
             let i = found.trailing_zeros() as usize;
@@ -114,7 +138,8 @@ impl Direction<'_> {
             let flat = matches!(self.surface, Surface::Field(_)) && eight.facing_max.0[i] <= FLAT_MAX;
             let normal = if flat { -eight.outwards.lane(i) } else { answers.normal.lane(i) };
             let candidate = self.candidate(ball, normal, answers.distance.0[i], index);
-            candidates.push(Candidate { rough: answers.inset == 0.0 && !flat && self.blur == 0.0, ..candidate });
+            candidates
+                .push(Candidate { rough: answers.inset == 0.0 && !flat && self.blur.is_none(), ..candidate });
         }
     }
 
@@ -145,8 +170,8 @@ impl Direction<'_> {
 
     /// The bits of the balls (in the field's frame) that may hold points that count.
     #[inline(always)]
-    fn near(&self, centres: Lanes3, radii: Lanes) -> u32 {
-        let near = self.reach(centres, radii) + Lanes::splat(self.blur);
+    pub(super) fn near(&self, centres: Lanes3, radii: Lanes) -> u32 {
+        let near = self.reach(centres, radii) + Lanes::splat(self.blur_depth);
         (self.surface.lower_bound(centres) - radii).below(near).bits()
     }
 
