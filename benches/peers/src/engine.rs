@@ -1,5 +1,7 @@
 //! Engine: what is asked of each, and which there are.
 
+use std::path::Path;
+
 use forerun::{Pose, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -37,28 +39,68 @@ pub(crate) enum Kind {
     Forerun,
     /// Rapier, meshes cut into convex parts
     Rapier,
+    /// Rapier, meshes cut finely; only for scenes where meshes move
+    RapierFine,
     /// Rapier, meshes as bare triangles; only for scenes where meshes move
     RapierTriangles,
     /// Box3D, meshes cut into convex parts
     Box3d,
+    /// Box3D, meshes cut finely; only for scenes where meshes move
+    Box3dFine,
     /// Jolt, meshes cut into convex parts
     Jolt,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Kind; 5] =
+    /// What is run when nobody says which.
+    pub(crate) const USUAL: [Kind; 5] =
         [Kind::Forerun, Kind::Rapier, Kind::RapierTriangles, Kind::Box3d, Kind::Jolt];
+    /// All there are.
+    pub(crate) const ALL: [Kind; 7] = [
+        Kind::Forerun,
+        Kind::Rapier,
+        Kind::RapierFine,
+        Kind::RapierTriangles,
+        Kind::Box3d,
+        Kind::Box3dFine,
+        Kind::Jolt,
+    ];
+
+    /// Whether it is another engine of the list on scenes where no mesh moves.
+    pub(crate) fn is_for_meshes(self) -> bool {
+        matches!(self, Kind::RapierFine | Kind::RapierTriangles | Kind::Box3dFine)
+    }
+
+    /// How it cuts moving meshes; none where it takes them as they are.
+    pub(crate) fn fineness(self) -> Option<Fineness> {
+        match self {
+            Kind::Forerun | Kind::RapierTriangles => None,
+            Kind::Rapier | Kind::Box3d | Kind::Jolt => Some(Fineness::Default),
+            Kind::RapierFine | Kind::Box3dFine => Some(Fineness::Fine),
+        }
+    }
 
     /// Name with version, as it stands in the lock file.
     pub(crate) fn label(self) -> String {
         match self {
             Kind::Forerun => "forerun".to_owned(),
             Kind::Rapier => format!("Rapier {}", locked_version("rapier3d")),
+            Kind::RapierFine => format!("Rapier {}, fine", locked_version("rapier3d")),
             Kind::RapierTriangles => format!("Rapier {}, triangles", locked_version("rapier3d")),
             Kind::Box3d => format!("Box3D (box3d-sys {})", locked_version("box3d-sys")),
+            Kind::Box3dFine => format!("Box3D (box3d-sys {}), fine", locked_version("box3d-sys")),
             Kind::Jolt => format!("Jolt {}", locked_version("joltc-sys")),
         }
     }
+}
+
+/// How finely meshes are cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fineness {
+    /// As parry's VHACD does it by default, and so Rapier's `convex_decomposition`.
+    Default,
+    /// Twice as fine in space, and a tenth of the hollowness left in a part.
+    Fine,
 }
 
 /// The version of a package that this program was built with. `1.2.3+Lib-4.5.6` is a wrapper's own version and that of what it wraps.
@@ -69,18 +111,28 @@ fn locked_version(package: &str) -> &'static str {
     version.split_once('+').map_or(version, |(_, wrapped)| wrapped.trim_start_matches("Jolt-"))
 }
 
-/// The stage as the engine takes it: moving meshes cut into hulls unless it takes them. Returns the most hulls of a mesh, 0 when
-/// none was cut; fails with what the engine cannot do.
+/// What cutting the moving meshes of a stage took and brought.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Cutting {
+    /// The most hulls of a mesh, 0 when none was cut.
+    pub(crate) hulls: usize,
+    /// CPU time. Milliseconds.
+    pub(crate) cpu_ms: f64,
+}
+
+/// Makes the stage what the engine takes: moving meshes are cut into hulls unless it takes them; these are kept in a folder, if one is
+/// given. Fails with what the engine cannot do.
 #[cfg(feature = "engines")]
-pub(crate) fn prepare(kind: Kind, stage: &mut Stage) -> Result<usize, String> {
+pub(crate) fn prepare(kind: Kind, stage: &mut Stage, folder: Option<&Path>) -> Result<Cutting, String> {
     if kind == Kind::Forerun {
-        return Ok(0);
+        return Ok(Cutting::default());
     }
     let pushed = |actor: &crate::stage::Actor| actor.def.force.length() + actor.def.torque.length() > 0.0;
     if stage.actors.iter().any(pushed) {
         return Err("constant forces and torques are not passed on".to_owned());
     }
-    if kind == Kind::RapierTriangles { Ok(0) } else { crate::parts::cut_moving_meshes(stage) }
+    kind.fineness()
+        .map_or(Ok(Cutting::default()), |fineness| crate::parts::cut_moving_meshes(stage, fineness, folder))
 }
 
 /// Builds the world of an engine. Fails with what the engine cannot do.
@@ -88,16 +140,18 @@ pub(crate) fn prepare(kind: Kind, stage: &mut Stage) -> Result<usize, String> {
 pub(crate) fn build(kind: Kind, stage: &Stage, threads: u16) -> Result<Box<dyn Engine>, String> {
     Ok(match kind {
         Kind::Forerun => Box::new(crate::forerun::Forerun::new(stage)?),
-        Kind::Rapier | Kind::RapierTriangles => Box::new(crate::rapier::Rapier::new(stage, threads)?),
-        Kind::Box3d => Box::new(crate::box3d::Box3d::new(stage, threads)?),
+        Kind::Rapier | Kind::RapierFine | Kind::RapierTriangles => {
+            Box::new(crate::rapier::Rapier::new(stage, threads)?)
+        }
+        Kind::Box3d | Kind::Box3dFine => Box::new(crate::box3d::Box3d::new(stage, threads)?),
         Kind::Jolt => Box::new(crate::jolt::Jolt::new(stage, threads)?),
     })
 }
 
 /// Our own engine takes every stage as it is; the others are not in this program.
 #[cfg(not(feature = "engines"))]
-pub(crate) fn prepare(kind: Kind, _: &mut Stage) -> Result<usize, String> {
-    if kind == Kind::Forerun { Ok(0) } else { Err(WITHOUT_ENGINES.to_owned()) }
+pub(crate) fn prepare(kind: Kind, _: &mut Stage, _: Option<&Path>) -> Result<Cutting, String> {
+    if kind == Kind::Forerun { Ok(Cutting::default()) } else { Err(WITHOUT_ENGINES.to_owned()) }
 }
 
 /// Builds the world of our own engine.
@@ -110,7 +164,7 @@ pub(crate) fn build(kind: Kind, stage: &Stage, _: u16) -> Result<Box<dyn Engine>
 }
 
 #[cfg(not(feature = "engines"))]
-const WITHOUT_ENGINES: &str = "this program was built without the feature \"engines\"";
+pub(crate) const WITHOUT_ENGINES: &str = "this program was built without the feature \"engines\"";
 
 #[cfg(test)]
 mod tests {
@@ -153,7 +207,7 @@ mod tests {
         }
         let fly = |kind| {
             let mut stage = Stage::of(&scene).unwrap();
-            prepare(kind, &mut stage).unwrap();
+            prepare(kind, &mut stage, None).unwrap();
             let mut world = build(kind, &stage, 1).unwrap();
             (0..15).for_each(|_| world.step().unwrap());
             world.motions()

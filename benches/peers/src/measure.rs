@@ -9,6 +9,7 @@ use forerun::{Clock, Scene, Threads};
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{self, Kind};
+use crate::mesh_run::MeshAnswer;
 use crate::quality::{Meter, Quality};
 use crate::stage::Stage;
 
@@ -21,12 +22,26 @@ pub(crate) struct Task {
     pub(crate) threads: u16,
 }
 
+/// What about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Question {
+    Times,
+    Quality,
+    /// What its meshes cost and are worth.
+    Mesh,
+    /// Of that, what differs from round to round.
+    MeshTimes,
+    /// Of that, the heap with boxes in the place of meshes.
+    HeapOfBoxes,
+}
+
 /// What it answers, as a line of JSON.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Answer {
     Times(Times),
     Quality(Quality),
+    Mesh(Box<MeshAnswer>),
     /// The engine cannot do this scene, and why.
     Cannot(String),
 }
@@ -46,7 +61,7 @@ pub(crate) struct Times {
 pub(crate) fn times(task: &Task) -> Answer {
     let run = || {
         let mut stage = Stage::of(&open(&task.scene)?)?;
-        engine::prepare(task.kind, &mut stage)?;
+        engine::prepare(task.kind, &mut stage, None)?;
         restart_peak();
         let mut world = engine::build(task.kind, &stage, task.threads)?;
         let clock = Clock::system();
@@ -70,7 +85,7 @@ pub(crate) fn quality(task: &Task) -> Answer {
         let scene = open(&task.scene)?;
         let mut meter = Meter::new(&scene)?;
         let mut stage = Stage::of(&scene)?;
-        let hulls = engine::prepare(task.kind, &mut stage)?;
+        let hulls = engine::prepare(task.kind, &mut stage, None)?.hulls;
         let mut world = engine::build(task.kind, &stage, task.threads)?;
         for frame in 0..task.frames {
             world.step()?;
@@ -84,12 +99,15 @@ pub(crate) fn quality(task: &Task) -> Answer {
 }
 
 /// Runs all of a task within one pool, so that no step pays for being handed over. Box3D and Jolt have threads of their own; to them it is just a thread.
-fn on_its_threads<T: Send>(task: &Task, run: impl FnOnce() -> Result<T, String> + Send) -> Result<T, String> {
+pub(crate) fn on_its_threads<T: Send>(
+    task: &Task,
+    run: impl FnOnce() -> Result<T, String> + Send,
+) -> Result<T, String> {
     let count = NonZeroU16::new(task.threads).unwrap_or(NonZeroU16::MIN);
     Threads::exactly(count).map_err(|error| error.to_string())?.install(run)
 }
 
-fn open(scene: &str) -> Result<Scene, String> {
+pub(crate) fn open(scene: &str) -> Result<Scene, String> {
     Scene::open(scene).map_err(|error| error.to_string())
 }
 

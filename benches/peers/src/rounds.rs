@@ -1,15 +1,13 @@
 //! Rounds: every engine in turn, each time in a process of its own, and what is made of all the times.
 
-use std::path::PathBuf;
-use std::process::{Command, Stdio};
-use std::{env, fmt};
+use std::fmt;
 
 use forerun::Scene;
 use serde::Serialize;
 
 use crate::engine::Kind;
-use crate::measure::{Answer, Task, Times};
-use crate::native::{self, Threaded};
+use crate::measure::{Answer, Question, Task, Times};
+use crate::processes::Programs;
 use crate::quality::Quality;
 use crate::stage::Stage;
 
@@ -91,35 +89,6 @@ impl Row {
     }
 }
 
-/// Where the programs lie.
-struct Programs {
-    ours: PathBuf,
-    one_thread: PathBuf,
-    threads: PathBuf,
-}
-
-impl Programs {
-    /// Builds what the plan needs.
-    fn build(plan: &Plan) -> Result<Self, String> {
-        let ours = env::current_exe().map_err(|error| error.to_string())?;
-        let peers = plan.engines.iter().any(|kind| *kind != Kind::Forerun);
-        let build = |wanted: bool, threaded| if wanted { native::build(threaded) } else { Ok(ours.clone()) };
-        Ok(Programs {
-            one_thread: build(peers && plan.threads.contains(&1), Threaded::No)?,
-            threads: build(peers && plan.threads.iter().any(|count| *count > 1), Threaded::Yes)?,
-            ours,
-        })
-    }
-
-    fn of(&self, task: &Task) -> &PathBuf {
-        match (task.kind, task.threads) {
-            (Kind::Forerun, _) => &self.ours,
-            (_, 1) => &self.one_thread,
-            _ => &self.threads,
-        }
-    }
-}
-
 /// Runs the whole plan. Scenes are opened before anything is built: a misspelt name is not to cost minutes.
 pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
     let mut stages = Vec::new();
@@ -128,10 +97,10 @@ pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
         let stage = Stage::of(&opened)?;
         stages.push((stage.actors.len(), stage.has_moving_meshes()));
     }
-    let programs = Programs::build(plan)?;
+    let programs = Programs::build(&plan.engines, &plan.threads)?;
     let mut rows = Vec::new();
     for (SceneAndFrames { scene, frames }, (bodies, meshes)) in plan.scenes.iter().zip(stages) {
-        let fits = |kind: &&Kind| meshes || **kind != Kind::RapierTriangles;
+        let fits = |kind: &&Kind| meshes || !kind.is_for_meshes();
         let kinds: Vec<Kind> = plan.engines.iter().filter(fits).copied().collect();
         let tasks = |threads: u16| -> Vec<Task> {
             let task = |kind: &Kind| Task { scene: scene.clone(), kind: *kind, frames: *frames, threads };
@@ -196,39 +165,19 @@ impl fmt::Display for Task {
 
 fn quality_of(programs: &Programs, task: &Task) -> Result<Quality, String> {
     eprintln!("quality: {task}");
-    match ask(programs, task, &["--quality"])? {
+    match programs.ask(task, Question::Quality)? {
         Answer::Quality(quality) => Ok(quality),
         Answer::Cannot(why) => Err(why),
-        Answer::Times(_) => Err("answered with times when asked for quality".to_owned()),
+        _ => Err("answered something else than quality".to_owned()),
     }
 }
 
 fn times_of(programs: &Programs, task: &Task) -> Result<Times, String> {
-    match ask(programs, task, &[])? {
+    match programs.ask(task, Question::Times)? {
         Answer::Times(times) => Ok(times),
         Answer::Cannot(why) => Err(why),
-        Answer::Quality(_) => Err("answered with quality when asked for times".to_owned()),
+        _ => Err("answered something else than times".to_owned()),
     }
-}
-
-/// Starts a process for the task and reads its answer.
-fn ask(programs: &Programs, task: &Task, flags: &[&str]) -> Result<Answer, String> {
-    let kind = serde_json::to_value(task.kind).map_err(|error| error.to_string())?;
-    let output = Command::new(programs.of(task))
-        .arg(&task.scene)
-        .args(["--frames", &task.frames.to_string(), "--threads", &task.threads.to_string()])
-        .args(["--one", kind.as_str().unwrap_or_default()])
-        .args(flags)
-        .stderr(Stdio::inherit())
-        .output()
-        .map_err(|error| format!("its process cannot be started: {error}"))?;
-    if !output.status.success() {
-        return Err(format!("its process ended with {}", output.status));
-    }
-    // Engines print too, before and after: the answer is the line that can be read.
-    let text = String::from_utf8_lossy(&output.stdout);
-    let answer = text.lines().find_map(|line| serde_json::from_str(line).ok());
-    answer.ok_or_else(|| format!("its process gave no answer, but \"{}\"", text.trim()))
 }
 
 fn measured(quality: Quality, rounds: &[Times]) -> Measured {
@@ -242,7 +191,7 @@ fn measured(quality: Quality, rounds: &[Times]) -> Measured {
 }
 
 /// Of every round the times of all steps. Milliseconds.
-fn step_times(rounds: &[&[f64]]) -> StepTimes {
+pub(crate) fn step_times(rounds: &[&[f64]]) -> StepTimes {
     let mean = |times: &[f64]| times.iter().sum::<f64>() / times.len().max(1) as f64;
     let later = |times: &&[f64]| mean(times.get(1..).unwrap_or_default());
     let steps = rounds.iter().map(|times| times.len()).min().unwrap_or(0);

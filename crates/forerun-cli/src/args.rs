@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+mod drawing;
+
+pub(crate) use drawing::{MeshArgs, RenderArgs, UpArg};
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Rigid-body physics that runs ahead of the display.
@@ -34,6 +38,10 @@ pub(crate) enum Command {
     Validate(ValidateArgs),
     /// Show a scene for minutes while it is edited and its physics stalls; watch the display, memory and every bit
     Soak(SoakArgs),
+    /// Tell everything about a mesh file: triangles, repairs, mass, distance field; draw it and slices of its field
+    Mesh(MeshArgs),
+    /// Run a scene and draw it at a time, or as a film, without a window
+    Render(RenderArgs),
     /// Write a simulation as an animated glTF file (not there yet)
     Bake(BakeArgs),
 }

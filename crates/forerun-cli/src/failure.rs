@@ -38,6 +38,14 @@ impl Failure {
         ))
     }
 
+    /// A picture that cannot be drawn or written.
+    pub(crate) fn picture(path: &Path, error: &str) -> Self {
+        Failure::Input(format!(
+            "{}: the picture cannot be written: {error}; choose another file",
+            path.display()
+        ))
+    }
+
     /// The exit code that scripts rely on.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
@@ -70,6 +78,7 @@ macro_rules! input_failure {
 
 input_failure!(
     forerun::DriverError,
+    forerun::geometry::mesh_file::MeshFileError,
     forerun::PlaybackError,
     forerun::RecordingError,
     forerun::SceneError,

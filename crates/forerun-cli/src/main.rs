@@ -1,15 +1,18 @@
-//! The `forerun` command: run, check, bench and compare scenes.
+//! The `forerun` command: run, check, bench, compare and draw scenes, and look at meshes.
 //!
 //! Parse, then do; every error meets here and becomes an exit code: 0 fine, 1 a check failed, 2 wrong usage or bad input.
 
 mod args;
+mod baking;
 mod bench;
+mod cache;
 mod charts;
 mod commands;
 mod experiment;
 mod failure;
 mod figures;
 mod output;
+mod picture;
 mod progress;
 mod results;
 mod soak;
@@ -47,6 +50,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Bench(args)) => commands::bench::run(&args),
         Some(Command::Validate(args)) => commands::validate::run(&args),
         Some(Command::Soak(args)) => commands::soak::run(&args),
+        Some(Command::Mesh(args)) => commands::mesh::run(&args),
+        Some(Command::Render(args)) => commands::render::run(&args),
         Some(Command::View(_)) => Err(Failure::not_there_yet("view")),
         Some(Command::Bake(_)) => Err(Failure::not_there_yet("bake")),
     }

@@ -172,12 +172,7 @@ fn validate_shape(def: &BodyDef) -> Result<(), BodyError> {
         Shape::Hull(_) | Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => Ok(Shape::HalfSpace),
     };
     made.map_err(|error| BodyError { field: error.field, message: error.message })?;
-    let has_volume = match &def.shape {
-        Shape::HalfSpace => false,
-        Shape::Mesh(mesh) => mesh.closed,
-        _ => true,
-    };
-    if def.kind == BodyKind::Dynamic && !has_volume {
+    if def.kind == BodyKind::Dynamic && !def.shape.has_volume() {
         let message = "an open mesh or half-space bounds no volume: such a body must be fixed or kinematic";
         return Err(BodyError { field: "shape", message: message.to_owned() });
     }

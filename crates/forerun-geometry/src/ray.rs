@@ -5,7 +5,7 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::shape::{Capsule, FirstHits, Hull, Mesh};
+use crate::shape::{Capsule, Enclosure, FirstHits, Hull, Mesh};
 use crate::{Pose, Quat, Shape, Vec3};
 
 /// A half line.
@@ -242,6 +242,14 @@ fn hull_hit(hull: &Hull, line: &Line) -> Option<Hit> {
     span.entry()
 }
 
+/// Whether a ray that meets the back of a mesh first starts inside. One that comes in through a covered hole does not.
+fn is_inside(mesh: &Mesh, origin: DVec3) -> bool {
+    match (mesh.enclosure, &mesh.collider().field) {
+        (Enclosure::Mended, Some(field)) => field.distance_and_gradient(origin.as_vec3()).0 < 0.0,
+        (enclosure, _) => enclosure == Enclosure::Closed,
+    }
+}
+
 /// The nearest triangle that faces the ray. If one that faces away comes first, the ray starts inside (closed mesh) or meets its back.
 fn mesh_hit(mesh: &Mesh, line: &Line) -> Option<Hit> {
     // On a silhouette edge the ray meets a front and a back at the same point, in an order that rounding decides: then the front counts.
@@ -253,7 +261,11 @@ fn mesh_hit(mesh: &Mesh, line: &Line) -> Option<Hit> {
         Some(Hit { distance: front.t, normal: Some(mesh.face_vector(front.triangle).normalize_or_zero()) })
     } else if back.t.is_finite() {
         let normal = -mesh.face_vector(back.triangle).normalize_or_zero();
-        Some(if mesh.closed { Hit::INSIDE } else { Hit { distance: back.t, normal: Some(normal) } })
+        Some(if is_inside(mesh, line.origin) {
+            Hit::INSIDE
+        } else {
+            Hit { distance: back.t, normal: Some(normal) }
+        })
     } else {
         None
     }

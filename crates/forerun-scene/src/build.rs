@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use forerun_dynamics::{Body, BodyDef, BodyError, Mass, Material};
 use forerun_geometry::shape::ShapeError;
@@ -11,6 +10,7 @@ use forerun_geometry::{Pose, Quat, Shape, Vec3};
 use crate::body::BodyEntry;
 use crate::error::{Fault, Step, Within};
 use crate::mesh::MeshEntry;
+use crate::mesh_baking::BakeSite;
 use crate::rotation::RotationEntry;
 use crate::shape::{HullEntry, PartEntry, ShapeEntry};
 
@@ -101,8 +101,8 @@ fn rotation(entry: Option<RotationEntry>) -> Result<Quat, Fault> {
 }
 
 /// The shape of a mesh.
-pub(crate) fn build_mesh(entry: &MeshEntry, folder: &Path) -> Result<Shape, Fault> {
-    Ok(entry.build(folder)?.into())
+pub(crate) fn build_mesh(entry: &MeshEntry, site: &BakeSite<'_>) -> Result<Shape, Fault> {
+    Ok(entry.build(site)?.into())
 }
 
 fn build_shape(entry: &ShapeEntry, shapes: &Shapes) -> Result<Shape, Fault> {

@@ -1,21 +1,22 @@
 //! Triangle meshes of a scene: from a file, or made by a formula.
 
-use std::path::Path;
-
 use forerun_geometry::Vec3;
-use forerun_geometry::mesh_file::{MeshFileError, MeshFileProblem, TriangleList, load_mesh, load_open_mesh};
-use forerun_geometry::shape::Mesh;
+use forerun_geometry::mesh_file::{
+    LIKELY_MILLIMETRES, MeshFileError, MeshFileOptions, MeshFileProblem, TriangleList, UpAxis, load_triangles,
+};
 use forerun_geometry::shape::mesh_make::{ball, torus};
+use forerun_geometry::shape::{Inside, Mesh};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Fault, Within};
+use crate::mesh_baking::BakeSite;
 use crate::range;
 
 /// A mesh in a scene file: exactly one of `file`, `torus`, `torus_knot` and `ball`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshEntry {
-    /// An OBJ or STL file. A relative name starts at the folder of the scene file.
+    /// An OBJ, STL, PLY or glTF file. A relative name starts at the folder of the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// A ring.
@@ -30,9 +31,42 @@ pub struct MeshEntry {
     /// Factor on all coordinates. Above 0, default 1.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub scale: f32,
+    /// Which axis of the file points up. Default y.
+    #[serde(default, skip_serializing_if = "UpEntry::is_y")]
+    pub up: UpEntry,
     /// Whether it may have holes and edges: a terrain. Such a mesh has no inside and is for fixed and kinematic bodies only. Default false.
     #[serde(default, skip_serializing_if = "is_false")]
     pub open: bool,
+}
+
+/// Which axis of a mesh file points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UpEntry {
+    /// x is up.
+    X,
+    /// y is up: glTF, and most programs that draw.
+    #[default]
+    Y,
+    /// z is up: most programs that construct.
+    Z,
+}
+
+impl UpEntry {
+    /// Whether nothing has to be turned.
+    fn is_y(&self) -> bool {
+        *self == UpEntry::Y
+    }
+}
+
+impl From<UpEntry> for UpAxis {
+    fn from(entry: UpEntry) -> Self {
+        match entry {
+            UpEntry::X => UpAxis::X,
+            UpEntry::Y => UpAxis::Y,
+            UpEntry::Z => UpAxis::Z,
+        }
+    }
 }
 
 /// A torus about the y axis.
@@ -92,8 +126,15 @@ fn is_false(open: &bool) -> bool {
 }
 
 impl MeshEntry {
-    const NONE: MeshEntry =
-        MeshEntry { file: None, torus: None, torus_knot: None, ball: None, scale: 1.0, open: false };
+    const NONE: MeshEntry = MeshEntry {
+        file: None,
+        torus: None,
+        torus_knot: None,
+        ball: None,
+        scale: 1.0,
+        up: UpEntry::Y,
+        open: false,
+    };
 
     /// A ring.
     #[must_use]
@@ -124,6 +165,11 @@ impl MeshEntry {
                 "for example torus = { radius = 0.5, tube_radius = 0.2, segments = 48, sides = 16 }",
             ));
         }
+        if self.file.is_none() && !self.up.is_y() {
+            let fault =
+                Fault::new("only a mesh from a file may have another axis up", "turn the body instead");
+            return Err(fault).in_field("up");
+        }
         if let Some(torus) = &self.torus {
             torus.check().in_field("torus")?;
         }
@@ -138,15 +184,14 @@ impl MeshEntry {
     }
 
     /// The mesh itself. Reads a file if there is one to read.
-    pub(crate) fn build(&self, folder: &Path) -> Result<Mesh, Fault> {
+    pub(crate) fn build(&self, site: &BakeSite<'_>) -> Result<Mesh, Fault> {
         let scale = self.scale;
         if let Some(file) = &self.file {
-            let load = if self.open { load_open_mesh } else { load_mesh };
-            load(folder.join(file), scale).map_err(|error| file_fault(&error)).in_field("file")
+            self.load(file, site).in_field("file")
         } else if let Some(t) = &self.torus {
             torus(t.radius * scale, t.tube_radius * scale, t.segments, t.sides).map_err(not_possible)
         } else if let Some(knot) = &self.torus_knot {
-            self.scaled(knot.build()).in_field("torus_knot")
+            self.scaled(knot.build(), site).in_field("torus_knot")
         } else if let Some(b) = &self.ball {
             ball(b.radius * scale, b.parts).map_err(not_possible)
         } else {
@@ -154,10 +199,29 @@ impl MeshEntry {
         }
     }
 
-    fn scaled(&self, triangles: TriangleList) -> Result<Mesh, Fault> {
+    fn load(&self, file: &str, site: &BakeSite<'_>) -> Result<Mesh, Fault> {
+        let path = site.folder.join(file);
+        let options = MeshFileOptions { scale: self.scale, up: self.up.into() };
+        let list = load_triangles(&path, options).map_err(|error| file_fault(&error))?;
+        let mesh = site.make(list, self.inside()).map_err(|error| {
+            file_fault(&MeshFileError { path: path.clone(), problem: MeshFileProblem::Mesh(error) })
+        })?;
+        let bounds = mesh.bounds();
+        let size = (bounds.max - bounds.min).max_element();
+        if mesh.has_inside() && size > LIKELY_MILLIMETRES {
+            site.warn(&format!("is {size} m large; write scale = 0.001 if the file is in millimetres"));
+        }
+        Ok(mesh)
+    }
+
+    fn scaled(&self, triangles: TriangleList, site: &BakeSite<'_>) -> Result<Mesh, Fault> {
         let vertices = triangles.vertices.into_iter().map(|v| v * self.scale).collect();
-        let make = if self.open { Mesh::open } else { Mesh::new };
-        make(vertices, triangles.triangles).map_err(not_possible)
+        let list = TriangleList { vertices, triangles: triangles.triangles };
+        site.make(list, self.inside()).map_err(not_possible)
+    }
+
+    fn inside(&self) -> Inside {
+        if self.open { Inside::Optional } else { Inside::Needed }
     }
 }
 
@@ -171,7 +235,7 @@ fn file_fault(error: &MeshFileError) -> Fault {
     let remedy = match error.problem {
         MeshFileProblem::Unreadable(_) => "the name is relative to the folder of the scene file",
         MeshFileProblem::TooLarge => "simplify the mesh",
-        MeshFileProblem::UnknownFormat => "convert the mesh to OBJ or STL",
+        MeshFileProblem::UnknownFormat => "convert the mesh to glTF, PLY, OBJ or STL",
         MeshFileProblem::Scale(_) => "write a factor above 0",
         MeshFileProblem::Parse(_) => "export the mesh again from its program",
         MeshFileProblem::Mesh(_) => MEND,
@@ -329,8 +393,8 @@ mod tests {
             sides: 32,
         };
         knot.check().unwrap();
-        let mesh = MeshEntry::torus_knot(knot).build(Path::new("")).unwrap();
-        assert!(mesh.closed && mesh.repairs.is_none(), "{}", mesh.repairs);
+        let mesh = MeshEntry::torus_knot(knot).build(&BakeSite::nowhere()).unwrap();
+        assert!(mesh.has_inside() && mesh.repairs.is_none(), "{}", mesh.repairs);
         let length: f32 =
             (0..1000).map(|i| knot.point(i, 1000).distance(knot.point((i + 1) % 1000, 1000))).sum();
         // Pappus: section times the length of the middle line.

@@ -13,6 +13,7 @@ use crate::command::{Roster, TimedCommand};
 use crate::command_entry::CommandEntry;
 use crate::error::{Fault, SceneError, Within};
 use crate::mesh::MeshEntry;
+use crate::mesh_baking::{BakeSite, MeshBaking};
 use crate::settings::SettingsEntry;
 use crate::source::{Format, Source};
 use crate::{range, read, write};
@@ -52,6 +53,9 @@ pub struct Scene {
     pub commands: Vec<CommandEntry>,
     #[serde(skip)]
     pub(crate) source: Source,
+    /// How its meshes are baked: where fields are kept, and who is told. Not part of the file.
+    #[serde(skip)]
+    pub baking: MeshBaking,
 }
 
 fn default_seconds() -> f32 {
@@ -82,6 +86,7 @@ impl Scene {
             meshes: BTreeMap::new(),
             bodies: Vec::new(),
             commands: Vec::new(),
+            baking: MeshBaking::default(),
         }
     }
 
@@ -194,7 +199,8 @@ impl Scene {
     fn build_meshes(&self) -> Result<BTreeMap<String, Shape>, Fault> {
         let folder = self.source.folder();
         let build = |(name, mesh): (&String, &MeshEntry)| {
-            let shape = build_mesh(mesh, &folder).in_field(name).in_field("meshes")?;
+            let site = BakeSite { folder: &folder, name, baking: &self.baking };
+            let shape = build_mesh(mesh, &site).in_field(name).in_field("meshes")?;
             Ok((name.clone(), shape))
         };
         self.meshes.iter().map(build).collect()
@@ -248,7 +254,7 @@ fn read_text(path: &Path) -> Result<String, Fault> {
     let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
     if bytes > FILE_BYTES_MAX {
         let message = format!("has {bytes} bytes, a scene file has at most {FILE_BYTES_MAX}");
-        return Err(Fault::new(message, "put large meshes into OBJ or STL files"));
+        return Err(Fault::new(message, "put large meshes into glTF, PLY, OBJ or STL files"));
     }
     std::fs::read_to_string(path).map_err(unreadable)
 }

@@ -258,6 +258,6 @@ fn mesh_files_are_found_beside_the_scene_in_obj_and_stl() {
     std::fs::remove_dir_all(&folder).unwrap();
     for body in &bodies {
         let forerun_geometry::Shape::Mesh(mesh) = &body.shape else { panic!("a mesh") };
-        assert_eq!((mesh.vertices.len(), mesh.triangles.len(), mesh.closed), (4, 4, true));
+        assert_eq!((mesh.vertices.len(), mesh.triangles.len(), mesh.has_inside()), (4, 4, true));
     }
 }

@@ -3,10 +3,11 @@
 use std::num::NonZeroU16;
 
 use forerun::dynamics::lanes::{self, InstructionSet};
-use forerun::{Scene, Threads, TimelineSettings, timeline_of, world_of};
+use forerun::{Threads, TimelineSettings, timeline_of, world_of};
 use serde::Serialize;
 
 use crate::args::{BenchArgs, InstructionsArg};
+use crate::baking::open_scene;
 use crate::bench::{Measurement, Run, add_storage, draw_stages, measure};
 use crate::failure::Failure;
 use crate::output::{print, print_json};
@@ -26,7 +27,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let count = NonZeroU16::new(args.threads).unwrap_or(NonZeroU16::MIN);
     let threads = Threads::exactly(count)?;
     // All scenes are opened first: a misspelt name is not to cost the measurements before it.
-    let mut scenes = args.scenes.iter().map(|typed| Scene::open(typed)).collect::<Result<Vec<_>, _>>()?;
+    let mut scenes = args.scenes.iter().map(|typed| open_scene(typed)).collect::<Result<Vec<_>, _>>()?;
     if args.awake {
         scenes.iter_mut().for_each(|scene| scene.settings.rest_seconds = Some(0.0));
     }

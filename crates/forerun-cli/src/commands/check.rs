@@ -10,6 +10,7 @@ use forerun::{BodyDef, Clock, Environment, Scene, Threads, Timeline};
 use serde::Serialize;
 
 use crate::args::CheckArgs;
+use crate::baking::open_scene;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::progress;
@@ -49,7 +50,7 @@ struct Verdict {
 
 /// `forerun check`.
 pub(crate) fn run(args: &CheckArgs) -> Result<(), Failure> {
-    let scene = Scene::open(&args.scene)?;
+    let scene = open_scene(&args.scene)?;
     let bodies = scene.bodies()?;
     let bar = progress::bar(u64::from(args.edits) * args.threads.len() as u64, &args.scene);
     let mut first: Option<(CheckReport, Times)> = None;

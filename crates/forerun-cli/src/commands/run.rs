@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use forerun::{Clock, DriverKind, Playback, PlaybackSettings, Report, Scene, play};
 
 use crate::args::{DriverArg, RunArgs};
+use crate::baking::open_scene;
 use crate::charts;
 use crate::failure::Failure;
 use crate::figures::{self, Recorded};
@@ -20,7 +21,7 @@ pub(crate) const DISSERTATION_FRAME_SECONDS: f32 = 0.030;
 
 /// `forerun run`.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
-    let scene = Scene::open(&args.scene)?;
+    let scene = open_scene(&args.scene)?;
     let settings = PlaybackSettings {
         driver: match args.driver {
             DriverArg::Decoupled => DriverKind::Decoupled,

@@ -2,10 +2,11 @@
 
 use std::num::NonZeroU16;
 
-use forerun::{Clock, Scene};
+use forerun::Clock;
 use serde::Serialize;
 
 use crate::args::SoakArgs;
+use crate::baking::open_scene;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::progress;
@@ -59,7 +60,7 @@ struct Verdict {
 
 /// `forerun soak`.
 pub(crate) fn run(args: &SoakArgs) -> Result<(), Failure> {
-    let scene = Scene::open(&args.scene)?;
+    let scene = open_scene(&args.scene)?;
     let settings = SoakSettings {
         seconds: args.seconds,
         fps: args.fps,

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::gjk::{self, Distance};
 use super::solid::Solid;
-use crate::shape::{Hull, Mesh};
+use crate::shape::{Enclosure, Hull, Mesh};
 use crate::{Aabb, Pose, Shape, Vec3};
 
 /// Shapes nearer to each other than this touch: what GJK and the rounding of poses leave open. Metres.
@@ -106,12 +106,15 @@ fn triangles_in(mesh: &Mesh, aabb: &Aabb) -> Vec<usize> {
     found
 }
 
-/// Whether a point that is not on the surface of a closed mesh is inside. In the mesh's frame.
+/// Whether a point that is not on the surface of a mesh is inside. In the mesh's frame.
 fn holds(mesh: &Mesh, point: Vec3) -> bool {
     // Any way out will do; one that follows no axis meets the fewest edges of what people build.
     let way_out = DVec3::new(0.48, 0.64, 0.6);
-    if !mesh.closed || !mesh.bounds().contains(point) {
+    if !mesh.has_inside() || !mesh.bounds().contains(point) {
         return false;
+    }
+    if let (Enclosure::Mended, Some(field)) = (mesh.enclosure, &mesh.collider().field) {
+        return field.distance_and_gradient(point).0 < 0.0;
     }
     let first = mesh.first_hits(point.as_dvec3(), way_out, |first| first.front.t.min(first.back.t));
     first.back.t < first.front.t

@@ -3,6 +3,7 @@
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 use crate::Shape;
+use crate::shape::Enclosure;
 
 mod principal;
 mod solid;
@@ -62,10 +63,14 @@ impl Shape {
             Shape::Capsule(c) => Solid::capsule(c.half_height.into(), c.radius.into()),
             Shape::Cylinder(c) => Solid::cylinder(c.half_height.into(), c.radius.into()),
             Shape::Hull(hull) => Solid::within(hull.triangles().map(|t| t.map(|v| v.as_dvec3()))),
-            Shape::Mesh(mesh) if mesh.closed => {
-                Solid::within((0..mesh.triangles.len()).map(|t| mesh.corners(t).map(|v| v.as_dvec3())))
-            }
-            Shape::HalfSpace | Shape::Mesh(_) => Solid::NOTHING,
+            Shape::Mesh(mesh) => match (mesh.enclosure, &mesh.collider().moments) {
+                (Enclosure::Open, _) => Solid::NOTHING,
+                (_, Some(m)) => Solid::of_moments(m.volume, m.first, m.second),
+                (_, None) => {
+                    Solid::within((0..mesh.triangles.len()).map(|t| mesh.corners(t).map(|v| v.as_dvec3())))
+                }
+            },
+            Shape::HalfSpace => Solid::NOTHING,
             Shape::Compound(compound) => {
                 let parts = compound.parts.iter().map(|(pose, shape)| shape.solid().at(pose));
                 Solid::sum(&parts.collect::<Vec<Solid>>())

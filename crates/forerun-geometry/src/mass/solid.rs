@@ -72,6 +72,12 @@ impl Solid {
             first += s * (d / 24.0);
             second += (outer(s, s) + outer(a, a) + outer(b, b) + outer(c, c)) * (d / 120.0);
         }
+        let solid = Solid::of_moments(volume, first, second);
+        Solid { centre: origin + solid.centre, ..solid }
+    }
+
+    /// By volume, first moment and second moment (the integral of x xᵀ).
+    pub(super) fn of_moments(volume: f64, first: DVec3, second: DMat3) -> Solid {
         if volume <= 0.0 {
             return Solid::NOTHING;
         }
@@ -79,7 +85,7 @@ impl Solid {
         let about_centre = second - outer(centre, centre) * volume;
         let trace = about_centre.x_axis.x + about_centre.y_axis.y + about_centre.z_axis.z;
         let inertia = DMat3::from_diagonal(DVec3::splat(trace)) - about_centre;
-        Solid { volume, centre: origin + centre, inertia }
+        Solid { volume, centre, inertia }
     }
 
     /// The same solid at a pose.

@@ -1,7 +1,7 @@
-//! Mesh files: triangle meshes from OBJ and STL.
+//! Mesh files: triangle meshes from OBJ, STL, PLY and glTF.
 //!
-//! The readers are our own: the usual crates do not say in which line an error is, and one of them can panic on a bad index; the tests compare
-//! with both on good files. Nothing in a file makes them panic or allocate more than a few times its size.
+//! The readers are our own: the usual crates do not say where in the file an error is, and some panic on a bad index; the tests compare
+//! with them on good files. Nothing in a file makes ours panic, or allocate more than a few times its size.
 
 use std::fmt;
 use std::fs::File;
@@ -11,22 +11,63 @@ use std::path::{Path, PathBuf};
 use crate::Vec3;
 use crate::shape::{Mesh, MeshError};
 
+mod gltf;
 mod obj;
+mod ply;
+mod ply_header;
+mod polygon;
 mod stl;
 
+pub use crate::shape::TriangleList;
+pub use gltf::{ReadBeside, parse_gltf};
 pub use obj::parse_obj;
+pub use ply::parse_ply;
 pub use stl::parse_stl;
 
 /// Largest file that is read. Bytes.
 const LARGEST_FILE: u64 = 1 << 30;
 
-/// What a file says, before anything is checked but the numbers themselves.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TriangleList {
-    /// Vertices. In the file's unit of length.
-    pub vertices: Vec<Vec3>,
-    /// Vertex indices of each triangle.
-    pub triangles: Vec<[u32; 3]>,
+/// A solid larger than this was most likely drawn in millimetres. Metres.
+pub const LIKELY_MILLIMETRES: f32 = 50.0;
+
+/// Which axis of a file points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UpAxis {
+    /// x is up, -y to the right.
+    X,
+    /// As everywhere here.
+    #[default]
+    Y,
+    /// z is up, as in most programs for construction: (x, y, z) becomes (x, z, -y).
+    Z,
+}
+
+impl UpAxis {
+    /// A position of the file with y up.
+    #[must_use]
+    pub fn turned(self, position: Vec3) -> Vec3 {
+        let Vec3 { x, y, z } = position;
+        match self {
+            UpAxis::X => Vec3::new(-y, x, z),
+            UpAxis::Y => position,
+            UpAxis::Z => Vec3::new(x, z, -y),
+        }
+    }
+}
+
+/// How the coordinates of a file are meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshFileOptions {
+    /// Factor on all lengths: 0.001 for a file in millimetres. A finite number above 0, default 1.
+    pub scale: f32,
+    /// Which axis points up. Default y.
+    pub up: UpAxis,
+}
+
+impl Default for MeshFileOptions {
+    fn default() -> Self {
+        MeshFileOptions { scale: 1.0, up: UpAxis::Y }
+    }
 }
 
 /// Why bytes are no mesh file.
@@ -72,7 +113,7 @@ pub enum MeshFileProblem {
     Unreadable(String),
     /// More than 1 GiB.
     TooLarge,
-    /// The extension is neither `obj` nor `stl`.
+    /// The extension is none of `obj`, `stl`, `ply`, `gltf` and `glb`.
     UnknownFormat,
     /// The scale asked for is not a finite number above 0.
     Scale(f32),
@@ -89,7 +130,10 @@ impl fmt::Display for MeshFileError {
             MeshFileProblem::Unreadable(why) => write!(f, "cannot be read: {why}"),
             MeshFileProblem::TooLarge => write!(f, "is larger than 1 GiB; simplify the mesh"),
             MeshFileProblem::UnknownFormat => {
-                write!(f, "is of no known mesh format; use a file that ends in .obj or .stl")
+                write!(
+                    f,
+                    "is of no known mesh format; use a file that ends in .obj, .stl, .ply, .gltf or .glb"
+                )
             }
             MeshFileProblem::Scale(scale) => {
                 write!(f, "the scale must be a finite number above 0, is {scale}")
@@ -102,39 +146,82 @@ impl fmt::Display for MeshFileError {
 
 impl std::error::Error for MeshFileError {}
 
-/// The closed mesh in an OBJ or STL file, its lengths multiplied by `scale` (0.001 for a file in millimetres).
+/// The closed mesh in a file.
 ///
 /// # Errors
 /// When the file cannot be read or parsed, or its triangles are no closed mesh; see [`Mesh::new`].
-pub fn load_mesh(path: impl AsRef<Path>, scale: f32) -> Result<Mesh, MeshFileError> {
-    load(path.as_ref(), scale, Mesh::new)
+pub fn load_mesh(path: impl AsRef<Path>, options: MeshFileOptions) -> Result<Mesh, MeshFileError> {
+    load(path.as_ref(), options, Mesh::new)
 }
 
 /// The same for a mesh that may be open: terrain and other fixed bodies.
 ///
 /// # Errors
 /// When the file cannot be read or parsed, or has no triangles; see [`Mesh::open`].
-pub fn load_open_mesh(path: impl AsRef<Path>, scale: f32) -> Result<Mesh, MeshFileError> {
-    load(path.as_ref(), scale, Mesh::open)
+pub fn load_open_mesh(path: impl AsRef<Path>, options: MeshFileOptions) -> Result<Mesh, MeshFileError> {
+    load(path.as_ref(), options, Mesh::open)
 }
 
 type MakeMesh = fn(Vec<Vec3>, Vec<[u32; 3]>) -> Result<Mesh, MeshError>;
 
-fn load(path: &Path, scale: f32, make: MakeMesh) -> Result<Mesh, MeshFileError> {
+fn load(path: &Path, options: MeshFileOptions, make: MakeMesh) -> Result<Mesh, MeshFileError> {
+    let list = load_triangles(path, options)?;
+    make(list.vertices, list.triangles)
+        .map_err(|error| MeshFileError { path: path.to_owned(), problem: MeshFileProblem::Mesh(error) })
+}
+
+/// The triangles in a file, scaled and turned, before anybody asks whether they make a mesh.
+///
+/// # Errors
+/// When the file cannot be read or parsed.
+pub fn load_triangles(
+    path: impl AsRef<Path>,
+    options: MeshFileOptions,
+) -> Result<TriangleList, MeshFileError> {
+    let path = path.as_ref();
     let fail = |problem| MeshFileError { path: path.to_owned(), problem };
+    let MeshFileOptions { scale, up } = options;
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(fail(MeshFileProblem::Scale(scale)));
     }
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let parse = match extension.as_str() {
-        "obj" => parse_obj,
-        "stl" => parse_stl,
-        _ => return Err(fail(MeshFileProblem::UnknownFormat)),
+    let beside = |name: &str| {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        read(&folder.join(name)).map_err(|problem| match problem {
+            MeshFileProblem::Unreadable(why) => why,
+            _ => "it is larger than 1 GiB".to_owned(),
+        })
+    };
+    let parse: &dyn Fn(&[u8]) -> Result<TriangleList, ParseError> = match Extension::of(path).map_err(fail)? {
+        Extension::Obj => &parse_obj,
+        Extension::Stl => &parse_stl,
+        Extension::Ply => &parse_ply,
+        Extension::Gltf => &|bytes| parse_gltf(bytes, &beside),
     };
     let bytes = read(path).map_err(fail)?;
     let mut list = parse(&bytes).map_err(|e| fail(MeshFileProblem::Parse(e)))?;
-    list.vertices.iter_mut().for_each(|v| *v *= scale);
-    make(list.vertices, list.triangles).map_err(|e| fail(MeshFileProblem::Mesh(e)))
+    list.vertices.iter_mut().for_each(|v| *v = up.turned(*v) * scale);
+    Ok(list)
+}
+
+/// What the end of a file's name says of its content.
+enum Extension {
+    Obj,
+    Stl,
+    Ply,
+    Gltf,
+}
+
+impl Extension {
+    fn of(path: &Path) -> Result<Extension, MeshFileProblem> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        match extension.as_str() {
+            "obj" => Ok(Extension::Obj),
+            "stl" => Ok(Extension::Stl),
+            "ply" => Ok(Extension::Ply),
+            "gltf" | "glb" => Ok(Extension::Gltf),
+            _ => Err(MeshFileProblem::UnknownFormat),
+        }
+    }
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, MeshFileProblem> {

@@ -1,9 +1,7 @@
 //! Wavefront OBJ: the lines `v` (position) and `f` (face); all others are skipped.
 
-use glam::DVec3;
-
+use super::polygon::cut_polygon;
 use super::{ParseError, TriangleList, parse_position, shortened};
-use crate::Vec3;
 
 /// The triangles of an OBJ file. Polygons are cut into fans.
 ///
@@ -56,37 +54,10 @@ fn parse_corner(word: &str, vertices: usize) -> Result<u32, String> {
     }
 }
 
-/// The triangles of a polygon, as a fan about the first corner from which all of them face the same way.
-fn cut_polygon(vertices: &[Vec3], corners: &[u32]) -> Result<Vec<[u32; 3]>, String> {
-    if corners.len() < 3 {
-        return Err(format!("a face needs three corners or more, there are {}", corners.len()));
-    }
-    let fan = |first: usize| {
-        let at = move |i: usize| corners[(first + i) % corners.len()];
-        (1..corners.len() - 1).map(move |i| [at(0), at(i), at(i + 1)])
-    };
-    if corners.len() == 3 {
-        return Ok(fan(0).collect());
-    }
-    let area = |triangle: [u32; 3]| {
-        let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3());
-        (b - a).cross(c - a)
-    };
-    let whole: DVec3 = fan(0).map(area).sum();
-    // A face of no area at all faces no way: any fan will do.
-    let best = (0..corners.len()).find(|&first| fan(first).all(|t| area(t).dot(whole) >= 0.0));
-    match best {
-        Some(first) => Ok(fan(first).collect()),
-        None => Err(format!(
-            "a face with {} corners is so far from convex that it cannot be cut into a fan; triangulate the mesh when exporting it",
-            corners.len()
-        )),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Vec3;
 
     #[test]
     fn reads_positions_faces_and_relative_indices() {

@@ -1,12 +1,18 @@
 //! Baking: from triangles to a field, once for each mesh.
 //!
-//! Promise: the same triangles give the same field, byte for byte, on every target.
+//! Promise: the same triangles give the same field, byte for byte, on every target and for any number of threads.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::Field;
-use super::nearest::{Nearest, Skin};
+use super::mend::Mended;
+use super::nearest::{Nearest, Skin, nearest};
+use super::winding::Winding;
 use crate::Vec3;
+use crate::shape::Mesh;
 
 /// Cells in half the thinnest thickness: 4 make the normals good to a degree (2 would still do).
 const CELLS_PER_HALF_THICKNESS: f32 = 4.0;
@@ -19,123 +25,208 @@ const BLOCK: usize = 4;
 /// Nodes nearer to the surface than this many cells are exact. Farther ones only serve to cull.
 const EXACT_CELLS: f32 = 4.0;
 
-/// The field of a closed surface: exact distances to the triangles at the nodes near it, signs by pseudo-normals.
-pub(crate) fn bake(skin: Skin<'_>) -> Field {
-    let bounds = skin.mesh.bounds();
-    let extent = bounds.max - bounds.min;
-    let wished = cell_size(extent, skin.mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
-    // Nodes on all six sides of the box around the mesh: the edges of boxes and plates are met exactly.
-    let cells = cells_along(extent, wished);
-    let cell = extent / Vec3::from_array(cells.map(|n| n as f32));
-    let origin = bounds.min - cell * PADDING as f32;
-    let size = cells.map(|n| n as usize + 2 * PADDING + 1);
-    let distances = vec![f32::NAN; size.iter().product()];
-    let mut baker = Baker { skin, origin, cell, size, distances, guess: None };
-    let blocks = baker.blocks();
-    for block in &blocks {
-        for node in block.corners() {
-            baker.measure(node);
-        }
+/// Told how much of the baking is done and how much there is in all, by the threads that do it: `done` is a different number
+/// each time, but a smaller one may come after a larger one.
+pub type BakeProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+/// What bounds the inside.
+pub(crate) enum Bounding<'a> {
+    /// A surface whose normals tell its sides.
+    Exactly(Skin<'a>),
+    /// Pieces of a surface, and the triangles that wind round what is inside.
+    Mended {
+        surface: &'a Mesh,
+        winding: Winding<'a>,
+        /// No hole in the surface is wider. Metres.
+        gap: f64,
+    },
+}
+
+impl<'a> Bounding<'a> {
+    /// What bounds the inside of a mended mesh.
+    pub(crate) fn mended(mended: &'a Mended) -> Bounding<'a> {
+        let winding = Winding::new(&mended.covered);
+        Bounding::Mended { surface: &mended.surface, winding, gap: mended.gap }
     }
-    let (far, near): (Vec<Block>, Vec<Block>) = blocks.iter().partition(|block| baker.is_far(block));
-    for block in near {
-        block.nodes().for_each(|node| baker.measure(node));
+
+    /// The signed distance of a point. `last`, of a point close by, makes it quick and is replaced.
+    fn measure(&self, at: DVec3, last: &mut Option<Measured>) -> f32 {
+        let guess = last.as_ref().map(|m| &m.nearest);
+        let (distance, nearest) = match self {
+            Bounding::Exactly(skin) => {
+                let nearest = skin.nearest(at, guess);
+                (skin.signed(at, &nearest).distance, nearest)
+            }
+            Bounding::Mended { surface, winding, gap } => {
+                let nearest = nearest(surface, at, guess);
+                let distance = nearest.distance();
+                // Between points that are farther from the surface than from each other it does not pass.
+                let same_side = |m: &&Measured| m.distance.abs() + distance > at.distance(m.at) + 3.0 * gap;
+                let inside = match last.as_ref().filter(same_side) {
+                    Some(m) => m.distance < 0.0,
+                    None => winding.at(at) > 0.5,
+                };
+                (if inside { -distance } else { distance }, nearest)
+            }
+        };
+        *last = Some(Measured { at, distance, nearest });
+        distance as f32
     }
-    for block in far {
-        block.nodes().for_each(|node| baker.interpolate(&block, node));
+}
+
+/// A point with its distance.
+struct Measured {
+    at: DVec3,
+    /// Negative inside. Metres.
+    distance: f64,
+    nearest: Nearest,
+}
+
+/// Where the nodes of a field are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grid {
+    origin: Vec3,
+    cell: Vec3,
+    /// Number of nodes along x, y and z.
+    size: [usize; 3],
+}
+
+impl Grid {
+    /// A grid around a mesh. `cell`: wished size; none for one that suits the thickness. Metres.
+    pub(crate) fn around(mesh: &Mesh, cell: Option<f32>) -> Grid {
+        let bounds = mesh.bounds();
+        let extent = bounds.max - bounds.min;
+        let wished = cell.unwrap_or(mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
+        // Nodes on all six sides of the box around the mesh: the edges of boxes and plates are met exactly.
+        let cells = cells_along(extent, cell_size(extent, wished));
+        let cell = extent / Vec3::from_array(cells.map(|n| n as f32));
+        let origin = bounds.min - cell * PADDING as f32;
+        Grid { origin, cell, size: cells.map(|n| n as usize + 2 * PADDING + 1) }
     }
-    Field::from_distances(origin, cell, size, &baker.distances)
+
+    /// Largest distance between neighbouring nodes. Metres.
+    pub(crate) fn cell(&self) -> f32 {
+        self.cell.max_element()
+    }
+
+    fn position(&self, node: [usize; 3]) -> DVec3 {
+        DVec3::from_array(node.map(|i| i as f64)) * self.cell.as_dvec3() + self.origin.as_dvec3()
+    }
+}
+
+/// The field of a surface: exact distances at the nodes near it.
+pub(crate) fn bake(grid: Grid, bounding: &Bounding<'_>, progress: BakeProgress<'_>) -> Field {
+    let distances = Baker { grid, bounding }.distances(progress);
+    Field::from_distances(grid.origin, grid.cell, grid.size, &distances)
 }
 
 /// A field in the making.
 struct Baker<'a> {
-    skin: Skin<'a>,
-    origin: Vec3,
-    cell: Vec3,
+    grid: Grid,
+    bounding: &'a Bounding<'a>,
+}
+
+/// Distances at the corners of all blocks.
+struct Corners {
+    /// Number of corners along x, y and z: one more than blocks.
     size: [usize; 3],
-    /// Distances so far; not a number where not known yet.
     distances: Vec<f32>,
-    /// The last answer: the next node is close by.
-    guess: Option<Nearest>,
-}
-
-/// The nodes from `low` to `high`, both included.
-#[derive(Clone, Copy)]
-struct Block {
-    low: [usize; 3],
-    high: [usize; 3],
-}
-
-impl Block {
-    fn corners(self) -> impl Iterator<Item = [usize; 3]> {
-        (0..8).map(move |k| {
-            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] })
-        })
-    }
-
-    fn nodes(self) -> impl Iterator<Item = [usize; 3]> {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.low[axis]..=self.high[axis]);
-        z.flat_map(move |z| {
-            let x = x.clone();
-            y.clone().flat_map(move |y| x.clone().map(move |x| [x, y, z]))
-        })
-    }
 }
 
 impl Baker<'_> {
-    /// All blocks; neighbours share the nodes between them.
-    fn blocks(&self) -> Vec<Block> {
-        let [nx, ny, nz] = self.size.map(|n| (0..n - 1).step_by(BLOCK));
-        let mut blocks = Vec::new();
-        for z in nz {
-            for y in ny.clone() {
-                for x in nx.clone() {
-                    let low = [x, y, z];
-                    let high = [0, 1, 2].map(|axis| (low[axis] + BLOCK).min(self.size[axis] - 1));
-                    blocks.push(Block { low, high });
+    /// Distances at all nodes, x fastest. Metres.
+    fn distances(&self, progress: BakeProgress<'_>) -> Vec<f32> {
+        let corners = self.corners();
+        let [nx, ny, nz] = self.grid.size;
+        let mut distances = vec![0.0; nx * ny * nz];
+        let rows = ny.div_ceil(BLOCK);
+        let (done, total) = (AtomicUsize::new(0), nz.div_ceil(BLOCK) * rows);
+        distances.par_chunks_mut(nx * ny * BLOCK).enumerate().for_each(|(slab, nodes)| {
+            let mut last = None;
+            for row in 0..rows {
+                for block in 0..nx.div_ceil(BLOCK) {
+                    self.fill([block, row, slab], &corners, nodes, &mut last);
+                }
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+            }
+        });
+        distances
+    }
+
+    /// Measures the corners of all blocks. The last ones are where the grid ends.
+    fn corners(&self) -> Corners {
+        let size = self.grid.size.map(|n| (n - 1).div_ceil(BLOCK) + 1);
+        let mut distances = vec![0.0; size.iter().product()];
+        distances.par_chunks_mut(size[0]).enumerate().for_each(|(row, distances)| {
+            let mut last = None;
+            for (x, distance) in distances.iter_mut().enumerate() {
+                let corner = [x, row % size[1], row / size[1]];
+                let node = [0, 1, 2].map(|axis| (corner[axis] * BLOCK).min(self.grid.size[axis] - 1));
+                *distance = self.measure(node, &mut last);
+            }
+        });
+        Corners { size, distances }
+    }
+
+    /// Fills in the nodes of a block, but for those on its high faces that are the next block's, into those of its slab.
+    fn fill(&self, block: [usize; 3], corners: &Corners, slab: &mut [f32], last: &mut Option<Measured>) {
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let low = block[axis] * BLOCK;
+            low..(low + BLOCK).min(self.grid.size[axis])
+        });
+        // The last nodes may be by themselves: then they are the high face of the block before.
+        let cells = [0, 1, 2].map(|axis| block[axis].min(corners.size[axis] - 2));
+        let values = corners.of(cells);
+        let far = self.is_far(&values);
+        for z in z {
+            for y in y.clone() {
+                for x in x.clone() {
+                    let node = [x, y, z];
+                    let index = (z - block[2] * BLOCK) * self.grid.size[0] * self.grid.size[1]
+                        + y * self.grid.size[0]
+                        + x;
+                    slab[index] =
+                        if far { self.interpolate(cells, &values, node) } else { self.measure(node, last) };
                 }
             }
         }
-        blocks
     }
 
-    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
-        (z * self.size[1] + y) * self.size[0] + x
+    /// Whether no node of a block with these distances at its corners can be so near that it must be exact.
+    fn is_far(&self, corners: &[f32; 8]) -> bool {
+        let half_diagonal = 0.5 * BLOCK as f32 * self.grid.cell.length();
+        let enough = EXACT_CELLS * self.grid.cell() + half_diagonal;
+        corners.iter().all(|distance| distance.abs() > enough)
     }
 
-    /// Whether no node of a block, its corners known, can be so near that it must be exact.
-    fn is_far(&self, block: &Block) -> bool {
-        let half_diagonal = 0.5 * BLOCK as f32 * self.cell.length();
-        let enough = EXACT_CELLS * self.cell.max_element() + half_diagonal;
-        block.corners().all(|node| self.distances[self.index(node)].abs() > enough)
+    fn measure(&self, node: [usize; 3], last: &mut Option<Measured>) -> f32 {
+        self.bounding.measure(self.grid.position(node), last)
     }
 
-    fn measure(&mut self, node: [usize; 3]) {
-        let index = self.index(node);
-        if !self.distances[index].is_nan() {
-            return;
-        }
-        let at = DVec3::from_array(node.map(|i| i as f64)) * self.cell.as_dvec3() + self.origin.as_dvec3();
-        let nearest = self.skin.nearest(at, self.guess.as_ref());
-        self.distances[index] = self.skin.signed(at, &nearest).distance as f32;
-        self.guess = Some(nearest);
-    }
-
-    /// Trilinear interpolation from the corners of the block.
-    fn interpolate(&mut self, block: &Block, node: [usize; 3]) {
-        let index = self.index(node);
-        if !self.distances[index].is_nan() {
-            return;
-        }
-        let part = [0, 1, 2]
-            .map(|axis| (node[axis] - block.low[axis]) as f32 / (block.high[axis] - block.low[axis]) as f32);
+    /// Trilinear interpolation from the corners of a block.
+    fn interpolate(&self, block: [usize; 3], corners: &[f32; 8], node: [usize; 3]) -> f32 {
+        let part = [0, 1, 2].map(|axis| {
+            let low = block[axis] * BLOCK;
+            let high = (low + BLOCK).min(self.grid.size[axis] - 1);
+            (node[axis] - low) as f32 / (high - low) as f32
+        });
         let mut sum = 0.0;
-        for (k, corner) in block.corners().enumerate() {
+        for (k, distance) in corners.iter().enumerate() {
             let weights =
                 [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { 1.0 - part[axis] } else { part[axis] });
-            sum += weights[0] * weights[1] * weights[2] * self.distances[self.index(corner)];
+            sum += weights[0] * weights[1] * weights[2] * distance;
         }
-        self.distances[index] = sum;
+        sum
+    }
+}
+
+impl Corners {
+    /// Distances at the corners of a block: x changes fastest, then y, then z.
+    fn of(&self, [x, y, z]: [usize; 3]) -> [f32; 8] {
+        std::array::from_fn(|k| {
+            let [x, y, z] = [x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)];
+            self.distances[(z * self.size[1] + y) * self.size[0] + x]
+        })
     }
 }
 

@@ -4,6 +4,7 @@
 //! panics, whatever the point (not-a-number gives not-a-number).
 #![allow(clippy::needless_range_loop, reason = "counted loops over fixed arrays are what vectorises")]
 
+use super::kept::Reader;
 use super::lanes::{Lanes, Lanes3, WIDTH};
 use crate::{Aabb, Vec3};
 
@@ -24,6 +25,8 @@ pub struct Field {
     nodes: Vec<i16>,
 }
 
+/// More nodes than a grid may have: whole numbers below this are exact in the arithmetic of look-ups.
+const NODES_END: usize = 1 << 23;
 /// The bits of a mask that is set in all lanes.
 const ALL: u32 = (1 << WIDTH) - 1;
 
@@ -51,10 +54,63 @@ impl Field {
         Field { origin, cell, size, cells: Vec3::from_array(size.map(|n| (n - 1) as f32)), scale, nodes }
     }
 
+    /// Appends what [`Field::read`] reads.
+    pub(super) fn write(&self, out: &mut Vec<u8>) {
+        let numbers = self.origin.to_array().into_iter().chain(self.cell.to_array()).chain([self.scale]);
+        numbers.for_each(|x| out.extend(x.to_le_bytes()));
+        self.size.iter().for_each(|n| out.extend((*n as u32).to_le_bytes()));
+        self.nodes.iter().for_each(|d| out.extend(d.to_le_bytes()));
+    }
+
+    /// A field that was written; none where it cannot be one.
+    pub(super) fn read(reader: &mut Reader<'_>) -> Option<Field> {
+        let (origin, cell, scale) = (reader.vec3()?, reader.vec3()?, reader.f32()?);
+        let size = [reader.u32()?, reader.u32()?, reader.u32()?].map(|n| n as usize);
+        let count = size.iter().try_fold(1_usize, |all, n| all.checked_mul(*n))?;
+        let lengths = [cell.x, cell.y, cell.z, scale];
+        let possible = origin.is_finite()
+            && lengths.iter().all(|x| *x > 0.0 && x.is_finite())
+            && size.iter().all(|n| *n >= 3)
+            && count < NODES_END;
+        if !possible {
+            return None;
+        }
+        let nodes = reader.i16s(count)?;
+        Some(Field {
+            origin,
+            cell,
+            size,
+            cells: Vec3::from_array(size.map(|n| (n - 1) as f32)),
+            scale,
+            nodes,
+        })
+    }
+
     /// Largest distance between neighbouring nodes. Metres.
     #[must_use]
     pub fn cell(&self) -> f32 {
         self.cell.max_element()
+    }
+
+    /// Distances between neighbouring nodes along x, y and z. Metres.
+    pub(super) fn cell_size(&self) -> Vec3 {
+        self.cell
+    }
+
+    /// Calls `visit` with the lowest corner of each cell and the distances at its corners: x changes fastest, then y, then z.
+    pub(super) fn each_cell(&self, mut visit: impl FnMut(Vec3, [f32; 8])) {
+        let [nx, ny, nz] = self.size;
+        let (row, layer) = (nx, nx * ny);
+        for z in 0..nz - 1 {
+            for y in 0..ny - 1 {
+                for x in 0..nx - 1 {
+                    let base = z * layer + y * row + x;
+                    let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
+                    let distances = corners.map(|k| f32::from(self.nodes[base + k]) * self.scale);
+                    visit(self.origin + Vec3::new(x as f32, y as f32, z as f32) * self.cell, distances);
+                }
+            }
+        }
     }
 
     /// The box that the grid covers.

@@ -5,30 +5,36 @@
 //! see [`crate::contact`].
 
 use crate::Vec3;
-use crate::shape::Mesh;
+use crate::shape::{Enclosure, Mesh};
 
-mod bake;
+pub(crate) mod bake;
 pub(crate) mod blur;
 mod field;
+pub(crate) mod kept;
 pub(crate) mod lanes;
+pub(crate) mod mend;
+pub(crate) mod moments;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
-mod pseudo_normals;
+pub(crate) mod pseudo_normals;
 pub(crate) mod ridges;
 mod samples;
+pub(crate) mod winding;
 
+pub use bake::BakeProgress;
 pub use field::Field;
+pub use kept::{BakeKey, KeptError};
 pub use samples::{Sample, Samples};
 
 use blur::Blur;
-use nearest::Skin;
+use moments::Moments;
 use pseudo_normals::{EdgeKind, PseudoNormals};
 use ridges::{Ridge, Ridges};
 
 /// All that contact needs to know of a mesh beyond its triangles, computed once. The default finds nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshCollider {
-    /// Signed distances; none for an open mesh, which has no inside.
+    /// Signed distances; none for a mesh without an inside.
     pub field: Option<Field>,
     /// Points of the surface: vertices, and points along long edges.
     pub samples: Samples,
@@ -36,6 +42,8 @@ pub struct MeshCollider {
     pub(crate) ridges: Ridges,
     /// Distance from the origin to the farthest vertex. Metres.
     pub radius: f32,
+    /// Of what is inside, where the triangles do not say it.
+    pub(crate) moments: Option<Moments>,
     /// Where the field blurs sharp edges.
     pub(crate) blur: Blur,
     normals: PseudoNormals,
@@ -49,19 +57,26 @@ const SHARP_COSINE: f32 = 0.94;
 const OPEN_EDGE_PARTS: f32 = 4.0;
 
 impl MeshCollider {
-    /// The collider of a mesh that is complete but for it. Takes some milliseconds for thousands of triangles.
+    /// The collider of a mesh that is complete but for it.
     ///
-    /// An open mesh gets no field: contact goes to its triangles, and only their front collides.
-    pub(crate) fn new(mesh: &Mesh) -> MeshCollider {
-        let normals = PseudoNormals::new(mesh);
-        let field = mesh.closed.then(|| bake::bake(Skin { mesh, normals: &normals }));
-        let edges = touchable_edges(mesh, &normals);
-        let samples = Samples::new(sample_points(mesh, &normals, &edges));
+    /// An open mesh has no field: contact goes to its triangles, and only their front collides.
+    pub(crate) fn new(mesh: &Mesh, normals: PseudoNormals, field: Option<Field>) -> MeshCollider {
+        let mut edges = touchable_edges(mesh, &normals);
+        let mut points = sample_points(mesh, &normals, &edges);
+        let mut moments = None;
+        if let (Enclosure::Mended, Some(field)) = (mesh.enclosure, &field) {
+            // What is inside of other parts touches nothing.
+            let outside = |point: Vec3| field.distance_and_gradient(point).0 > -0.5 * field.cell();
+            points.retain(|sample| outside(sample.point));
+            edges.retain(|edge| outside((edge.ends[0] + edge.ends[1]) * 0.5));
+            moments = Some(Moments::of(field));
+        }
+        let samples = Samples::new(points);
         let ridges = long_ridges(mesh, &edges);
         let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
         let sharp = sharp_edges(mesh, &normals);
         let blur = field.as_ref().map_or_else(Blur::default, |field| Blur::new(field, &sharp));
-        MeshCollider { field, samples, ridges, radius, blur, normals }
+        MeshCollider { field, samples, ridges, radius, moments, blur, normals }
     }
 
     /// Memory that it takes.
@@ -117,7 +132,7 @@ fn sample_points(mesh: &Mesh, normals: &PseudoNormals, edges: &[Ridge]) -> Vec<S
         .map(|((point, normal), facing_max)| Sample { point: *point, normal: *normal, facing_max })
         .collect();
     let total = edges.iter().map(|e| e.ends[0].distance(e.ends[1])).sum::<f32>();
-    let wished = if mesh.closed {
+    let wished = if mesh.has_inside() {
         2.0 * mesh.half_thickness()
     } else {
         total / (OPEN_EDGE_PARTS * edges.len().max(1) as f32)

@@ -33,6 +33,18 @@ pub(crate) struct Nearest {
     feature: Feature,
 }
 
+impl Nearest {
+    /// Metres.
+    pub(crate) fn distance(&self) -> f64 {
+        self.distance_squared.sqrt()
+    }
+
+    /// Of equally near triangles the first is meant, whatever the guess was.
+    fn rank(&self) -> (f64, usize) {
+        (self.distance_squared, self.triangle)
+    }
+}
+
 /// A surface point seen from a point, with its side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Signed {
@@ -60,20 +72,9 @@ impl<'a> Skin<'a> {
         Skin { mesh, normals: &mesh.collider().normals }
     }
 
-    /// The point of the surface nearest to `point`. `guess`, an earlier answer for a point close by, makes it quick.
+    /// [`nearest`] on this surface.
     pub(crate) fn nearest(&self, point: DVec3, guess: Option<&Nearest>) -> Nearest {
-        let mut best = self.nearest_on(guess.map_or(0, |g| g.triangle), point);
-        let limit = best.distance_squared;
-        let distance = |bounds: &Aabb| Some(distance_squared(bounds, point));
-        let visit = |triangle: u32| {
-            let candidate = self.nearest_on(triangle as usize, point);
-            if candidate.distance_squared < best.distance_squared {
-                best = candidate;
-            }
-            best.distance_squared
-        };
-        self.mesh.tree().walk(distance, visit, limit);
-        best
+        nearest(self.mesh, point, guess)
     }
 
     /// On which side of the surface a point is, and how far, given its nearest point.
@@ -126,11 +127,27 @@ impl<'a> Skin<'a> {
         let point = point.as_dvec3();
         self.signed(point, &self.nearest(point, None))
     }
+}
 
-    fn nearest_on(&self, triangle: usize, point: DVec3) -> Nearest {
-        let (nearest, feature) = nearest_on_triangle(point, corners(self.mesh, triangle));
-        Nearest { distance_squared: point.distance_squared(nearest), point: nearest, triangle, feature }
-    }
+/// The point of the triangles nearest to `point`. `guess`, an earlier answer for a point close by, makes it quick.
+pub(crate) fn nearest(mesh: &Mesh, point: DVec3, guess: Option<&Nearest>) -> Nearest {
+    let mut best = nearest_on(mesh, guess.map_or(0, |g| g.triangle), point);
+    let limit = best.distance_squared;
+    let distance = |bounds: &Aabb| Some(distance_squared(bounds, point));
+    let visit = |triangle: u32| {
+        let candidate = nearest_on(mesh, triangle as usize, point);
+        if candidate.rank() < best.rank() {
+            best = candidate;
+        }
+        best.distance_squared
+    };
+    mesh.tree().walk(distance, visit, limit);
+    best
+}
+
+fn nearest_on(mesh: &Mesh, triangle: usize, point: DVec3) -> Nearest {
+    let (nearest, feature) = nearest_on_triangle(point, corners(mesh, triangle));
+    Nearest { distance_squared: point.distance_squared(nearest), point: nearest, triangle, feature }
 }
 
 fn distance_squared(bounds: &Aabb, point: DVec3) -> f64 {
@@ -214,7 +231,7 @@ mod tests {
             let part = |k: u32| f64::from((i * 7919 + i * i % 613 * k * 104_729) % 4001) / 4001.0 * 4.0 - 2.0;
             let p = DVec3::new(part(1), part(2), part(3));
             let nearest = skin.nearest(p, guess.as_ref());
-            let all = (0..mesh.triangles.len()).map(|t| skin.nearest_on(t, p).distance_squared);
+            let all = (0..mesh.triangles.len()).map(|t| nearest_on(&mesh, t, p).distance_squared);
             let brute = all.fold(f64::INFINITY, f64::min);
             assert!((nearest.distance_squared - brute).abs() < 1e-12, "{p}");
             let signed = skin.signed(p, &nearest);

@@ -2,8 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::MeshError;
+use glam::DVec3;
+
+use super::{Mesh, MeshError};
 use crate::Vec3;
+use crate::sdf::mend::Covers;
+use crate::sdf::winding::Winding;
 
 /// How often slivers beside slivers are taken up again.
 const SLIVER_ROUNDS: usize = 16;
@@ -142,4 +146,178 @@ pub(super) fn check_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(
         Some(run) => Err(MeshError::Twisted { edges: twisted.len(), first: ends(run) }),
         None => Ok(()),
     }
+}
+
+/// An edge of a triangle: lower vertex, higher vertex, triangle, whether passed upwards.
+type Side = (u32, u32, u32, bool);
+
+/// The sides of all triangles, sorted: each edge is a run.
+fn sides(triangles: &[[u32; 3]]) -> Vec<Side> {
+    let mut sides: Vec<Side> = (0_u32..)
+        .zip(triangles)
+        .flat_map(|(t, &[a, b, c])| [(a, b, t), (b, c, t), (c, a, t)])
+        .map(|(a, b, t)| (a.min(b), a.max(b), t, a < b))
+        .collect();
+    sides.sort_unstable();
+    sides
+}
+
+/// Turns triangles so that neighbours across edges of two triangles face the same way, as most of the area of each part does. Returns how
+/// many were turned, and of each triangle the part that it hangs together with.
+pub(super) fn turn_to_neighbours(vertices: &[Vec3], triangles: &mut [[u32; 3]]) -> (u32, Vec<u32>) {
+    const NONE: u32 = u32::MAX;
+    let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); triangles.len()];
+    for run in sides(triangles).chunk_by(|e, f| (e.0, e.1) == (f.0, f.1)) {
+        if let [a, b] = run {
+            let twisted = a.3 == b.3;
+            neighbours[a.2 as usize].push((b.2, twisted));
+            neighbours[b.2 as usize].push((a.2, twisted));
+        }
+    }
+    let mut parts = vec![NONE; triangles.len()];
+    let mut turn = vec![false; triangles.len()];
+    let (mut count, mut turned) = (0, 0);
+    for first in 0..triangles.len() {
+        if parts[first] != NONE {
+            continue;
+        }
+        parts[first] = count;
+        let mut part = vec![first];
+        let mut next = 0;
+        while next < part.len() {
+            let triangle = part[next];
+            next += 1;
+            for (neighbour, twisted) in neighbours[triangle].iter().map(|(n, t)| (*n as usize, *t)) {
+                if parts[neighbour] == NONE {
+                    parts[neighbour] = count;
+                    turn[neighbour] = turn[triangle] ^ twisted;
+                    part.push(neighbour);
+                }
+            }
+        }
+        count += 1;
+        let area = |turned: bool| {
+            let those = part.iter().filter(|t| turn[**t] == turned);
+            those.map(|t| face_vector(vertices, triangles[*t]).length()).sum::<f64>()
+        };
+        let others = area(true) > area(false);
+        for t in part.into_iter().filter(|t| turn[*t] != others) {
+            triangles[t].swap(1, 2);
+            turned += 1;
+        }
+    }
+    (turned, parts)
+}
+
+/// Triangles that close a mesh: for each edge that is passed more often one way than the other, between it and the middle of its hole.
+pub(super) fn covers(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Covers {
+    let mut rims: Vec<[u32; 2]> = Vec::new();
+    for run in sides(triangles).chunk_by(|e, f| (e.0, e.1) == (f.0, f.1)) {
+        let (low, high) = (run[0].0, run[0].1);
+        let up = run.iter().filter(|side| side.3).count();
+        let down = run.len() - up;
+        rims.extend((down..up).map(|_| [high, low]));
+        rims.extend((up..down).map(|_| [low, high]));
+    }
+    // Rims that share a vertex are of one hole: it is named by a vertex.
+    let mut hole: Vec<u32> = (0..vertices.len() as u32).collect();
+    let find = |hole: &[u32], mut v: u32| {
+        while hole[v as usize] != v {
+            v = hole[v as usize];
+        }
+        v
+    };
+    for [a, b] in &rims {
+        let (a, b) = (find(&hole, *a), find(&hole, *b));
+        // The lower name: rims come sorted, so that chains stay short.
+        hole[a.max(b) as usize] = a.min(b);
+    }
+    let mut middles: BTreeMap<u32, (DVec3, f64, u32)> = BTreeMap::new();
+    for rim in &rims {
+        let [a, b] = rim.map(|v| vertices[v as usize].as_dvec3());
+        let next = vertices.len() as u32 + middles.len() as u32;
+        let middle = middles.entry(find(&hole, rim[0])).or_insert((DVec3::ZERO, 0.0, next));
+        let length = a.distance(b);
+        middle.0 += (a + b) * (0.5 * length);
+        middle.1 += length;
+    }
+    let triangles = rims.iter().map(|[a, b]| [*a, *b, middles[&find(&hole, *a)].2]).collect();
+    let mut apexes = vec![Vec3::ZERO; middles.len()];
+    for (sum, length, index) in middles.values() {
+        apexes[*index as usize - vertices.len()] = (sum / length).as_vec3();
+    }
+    Covers { apexes, triangles }
+}
+
+/// Number of edges of more than two triangles.
+pub(super) fn crowded_edges(triangles: &[[u32; 3]]) -> u32 {
+    let sides = sides(triangles);
+    sides.chunk_by(|e, f| (e.0, e.1) == (f.0, f.1)).filter(|run| run.len() > 2).count() as u32
+}
+
+/// Normal of a triangle, twice as long as its area.
+fn face_vector(vertices: &[Vec3], triangle: [u32; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3());
+    (b - a).cross(c - a)
+}
+
+/// Turns whole parts that face inwards without being a cavity in others. `parts`: of each triangle. Returns how many triangles.
+pub(super) fn turn_shells(vertices: &[Vec3], triangles: &mut [[u32; 3]], parts: &[u32]) -> u32 {
+    let volumes = part_volumes(vertices, triangles, parts);
+    if volumes.iter().all(|volume| *volume >= 0.0) {
+        return 0;
+    }
+    // All parts faced outwards: then they go round a point as often as it is inside of parts.
+    let outward = (triangles.iter().zip(parts))
+        .map(|(&[a, b, c], part)| if volumes[*part as usize] < 0.0 { [a, c, b] } else { [a, b, c] });
+    let outward = Mesh::assemble(vertices.to_vec(), outward.collect());
+    let winding = Winding::new(&outward);
+    let mut turn: Vec<Option<bool>> = volumes.iter().map(|v| (*v >= 0.0).then_some(false)).collect();
+    let mut turned = 0;
+    for (t, part) in parts.iter().enumerate() {
+        let turn = turn[*part as usize].get_or_insert_with(|| {
+            let [a, b, c] = outward.corners(t).map(|v| v.as_dvec3());
+            let vector = (b - a).cross(c - a);
+            let beside = vector.normalize_or_zero() * (1e-3 * vector.length().sqrt());
+            let around = winding.at((a + b + c) / 3.0 + beside).round();
+            around.rem_euclid(2.0) < 0.5
+        });
+        if *turn {
+            triangles[t].swap(1, 2);
+            turned += 1;
+        }
+    }
+    turned
+}
+
+/// Signed volume of each part, holes covered from its middle. Cubic metres.
+fn part_volumes(vertices: &[Vec3], triangles: &[[u32; 3]], parts: &[u32]) -> Vec<f64> {
+    let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
+    let mut middles = vec![(DVec3::ZERO, 0.0); count];
+    for (triangle, part) in triangles.iter().zip(parts) {
+        let area = face_vector(vertices, *triangle).length();
+        let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3());
+        let middle = &mut middles[*part as usize];
+        middle.0 += (a + b + c) * (area / 3.0);
+        middle.1 += area;
+    }
+    let mut volumes = vec![0.0; count];
+    for (triangle, part) in triangles.iter().zip(parts) {
+        let (sum, area) = middles[*part as usize];
+        let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3() - sum / area);
+        volumes[*part as usize] += a.dot(b.cross(c)) / 6.0;
+    }
+    volumes
+}
+
+/// Signed volume (m³, by the divergence theorem) and area (m²).
+pub(super) fn volume_and_area(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (f64, f64) {
+    let origin = vertices[triangles[0][0] as usize].as_dvec3();
+    let (mut volume, mut area) = (0.0, 0.0);
+    for triangle in triangles {
+        let [a, b, c]: [DVec3; 3] = triangle.map(|i| vertices[i as usize].as_dvec3() - origin);
+        volume += a.dot(b.cross(c)) / 6.0;
+        area += (b - a).cross(c - a).length() / 2.0;
+    }
+    (volume, area)
 }

@@ -12,16 +12,23 @@ mod hull_faces;
 mod hull_surface;
 mod measure;
 mod mesh;
+mod mesh_draft;
 pub mod mesh_make;
 mod mesh_ray;
+mod mesh_report;
 mod mesh_topology;
 mod reach;
+mod triangle_list;
 mod triangle_tree;
 
 pub use compound::Compound;
 pub use hull::{Hull, HullEdge, HullFace, hull_inner_radius};
-pub use mesh::{Mesh, MeshError, MeshRepairs};
+pub use mesh::Mesh;
+pub use mesh_draft::{Inside, MeshDraft, MeshOptions};
 pub(crate) use mesh_ray::FirstHits;
+pub use mesh_report::{Enclosure, MeshError, MeshRepairs};
+pub use triangle_list::TriangleList;
+pub(crate) use triangle_tree::TreeNode;
 
 /// A shape in a frame of its own. Cloning is cheap: large shapes are shared.
 ///
@@ -168,12 +175,22 @@ impl Shape {
         Ok(Shape::Compound(Arc::new(Compound::new(parts)?)))
     }
 
-    /// A closed triangle mesh, wound counter-clockwise seen from outside (metres).
+    /// A triangle mesh with an inside, wound counter-clockwise seen from outside (metres).
     ///
     /// # Errors
-    /// When the mesh is open or otherwise not the surface of a solid; see [`Mesh::new`].
+    /// When the triangles are not the surface of a solid; see [`Mesh::new`].
     pub fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Shape, ShapeError> {
         Ok(Mesh::new(vertices, triangles)?.into())
+    }
+
+    /// Whether there is a finite volume inside: what a dynamic body must have.
+    #[must_use]
+    pub fn has_volume(&self) -> bool {
+        match self {
+            Shape::HalfSpace => false,
+            Shape::Mesh(mesh) => mesh.has_inside(),
+            _ => true,
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use super::start::{NameValue, StartValue};
 const MAGIC: [u8; 8] = *b"\x89forerun";
 
 /// The version of the format. It counts up whenever an old program could not read a new file.
-pub(super) const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 2;
 
 /// One record. The number of the variant is the first byte: new ones go to the end.
 #[derive(Debug, Serialize, Deserialize)]

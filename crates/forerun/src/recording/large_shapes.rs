@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use forerun_geometry::shape::{
-    Capsule, Compound, Cuboid, Cylinder, Hull, HullEdge, HullFace, Mesh, MeshRepairs, Sphere,
-    hull_inner_radius,
+    Capsule, Compound, Cuboid, Cylinder, Hull, HullEdge, HullFace, Inside, Mesh, MeshDraft, MeshOptions,
+    MeshRepairs, Sphere, hull_inner_radius,
 };
 use forerun_geometry::{Pose, Quat, Shape, Vec3};
 use serde::{Deserialize, Serialize};
@@ -59,12 +59,14 @@ pub(super) enum LargeShape {
         edges: Vec<([u32; 2], [u32; 2])>,
         centre: Three,
     },
-    /// Vertices, triangles, whether it is closed, and what was mended when it was made: welded, unused, dropped, recut, turned.
+    /// Vertices, triangles, whether an inside is needed, the wished cell size, and what was mended before these triangles came to be:
+    /// welded, unused, dropped, recut, flipped, turned.
     Mesh {
         vertices: Vec<Three>,
         triangles: Vec<[u32; 3]>,
-        closed: bool,
-        repairs: ([u32; 4], bool),
+        inside: bool,
+        cell: Option<f32>,
+        repairs: ([u32; 5], bool),
     },
     Compound(Vec<(PoseValue, ShapeValue)>),
 }
@@ -129,13 +131,15 @@ fn hull_value(hull: &Hull) -> LargeShape {
 }
 
 fn mesh_value(mesh: &Mesh) -> LargeShape {
-    let MeshRepairs { welded_vertices, unused_vertices, dropped_triangles, recut_triangles, turned } =
-        mesh.repairs;
+    let r = &mesh.repairs;
+    let counts =
+        [r.welded_vertices, r.unused_vertices, r.dropped_triangles, r.recut_triangles, r.flipped_triangles];
     LargeShape::Mesh {
         vertices: mesh.vertices.iter().map(Vec3::to_array).collect(),
         triangles: mesh.triangles.clone(),
-        closed: mesh.closed,
-        repairs: ([welded_vertices, unused_vertices, dropped_triangles, recut_triangles], turned),
+        inside: mesh.options().inside == Inside::Needed,
+        cell: mesh.options().cell,
+        repairs: (counts, r.turned),
     }
 }
 
@@ -185,26 +189,18 @@ pub(super) fn large_shape_of(value: LargeShape, stored: &[Shape]) -> Result<Shap
             check_hull(&hull).map_err(|what| format!("a hull {what}"))?;
             Ok(Shape::Hull(Arc::new(hull)))
         }
-        LargeShape::Mesh {
-            vertices,
-            triangles,
-            closed,
-            repairs: ([welded, unused, dropped, recut], turned),
-        } => {
+        LargeShape::Mesh { vertices, triangles, inside, cell, repairs } => {
             let vertices: Vec<Vec3> = vertices.into_iter().map(Vec3::from_array).collect();
-            let made = if closed { Mesh::new } else { Mesh::open };
-            let mut mesh =
-                made(vertices.clone(), triangles.clone()).map_err(|error| format!("a mesh: {error}"))?;
-            // A mesh that was mended once needs no more of it.
-            if mesh.vertices != vertices || mesh.triangles != triangles || mesh.closed != closed {
-                return Err("a mesh that does not come out as it was".to_owned());
-            }
+            let mut mesh = mesh_of((vertices, triangles), inside, cell)?;
+            let ([welded, unused, dropped, recut, flipped], turned) = repairs;
             mesh.repairs = MeshRepairs {
                 welded_vertices: welded,
                 unused_vertices: unused,
                 dropped_triangles: dropped,
                 recut_triangles: recut,
+                flipped_triangles: flipped,
                 turned,
+                ..mesh.repairs
             };
             Ok(mesh.into())
         }
@@ -218,6 +214,19 @@ pub(super) fn large_shape_of(value: LargeShape, stored: &[Shape]) -> Result<Shap
             Ok(Shape::Compound(Arc::new(Compound { parts })))
         }
     }
+}
+
+/// The mesh of triangles that came from one.
+fn mesh_of(triangles: (Vec<Vec3>, Vec<[u32; 3]>), inside: bool, cell: Option<f32>) -> Result<Mesh, String> {
+    let options = MeshOptions { inside: if inside { Inside::Needed } else { Inside::Optional }, cell };
+    let fail = |error| format!("a mesh: {error}");
+    let draft = MeshDraft::new(triangles.0.clone(), triangles.1.clone(), options).map_err(fail)?;
+    let mesh = draft.bake(&|_, _| {}).map_err(fail)?;
+    // A mesh that was mended once needs no more of it.
+    if (&mesh.vertices, &mesh.triangles) != (&triangles.0, &triangles.1) {
+        return Err("a mesh that does not come out as it was".to_owned());
+    }
+    Ok(mesh)
 }
 
 /// Whether a hull is closed and convex, and its parts refer to what is there.

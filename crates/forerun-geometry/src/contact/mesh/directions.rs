@@ -11,7 +11,7 @@ use crate::sdf::blur::Blur;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
 use crate::sdf::ridges::Ridges;
-use crate::shape::Mesh;
+use crate::shape::{Enclosure, Mesh};
 use crate::{Pose, Shape, Vec3};
 
 use super::points::{self, Region, RoundPoint};
@@ -77,8 +77,11 @@ pub(super) fn between<'a>(first: &Placed<'a>, second: &Placed<'a>, margin: f32) 
 fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f32) -> Option<Direction<'a>> {
     let to_field = field.pose.inverse() * sampled.pose;
     let surface = surface_of(field.shape, 2.0 * sampled.shape.half_thickness())?;
+    // The triangles of a mended mesh do not tell its sides.
     let (skin, blur) = match field.shape {
-        Shape::Mesh(mesh) => (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.is_any())),
+        Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
+            (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.is_any()))
+        }
         _ => (None, None),
     };
     let (points, ridges) = match (sampled.shape, field.shape) {
@@ -142,6 +145,6 @@ fn surface_of(shape: &Shape, depth_limit: f32) -> Option<Surface<'_>> {
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.
 fn region_of(mesh: &Mesh, to_primitive: &Pose, margin: f32) -> Region {
     let radius = mesh.collider().radius;
-    let spacing = if mesh.closed { 2.0 * mesh.half_thickness() } else { radius };
+    let spacing = if mesh.has_inside() { 2.0 * mesh.half_thickness() } else { radius };
     Region { centre: to_primitive.position, radius: radius + margin, spacing }
 }
