@@ -9,16 +9,16 @@ use crate::shape::{Enclosure, Mesh};
 
 pub(crate) mod bake;
 pub(crate) mod blur;
+pub(crate) mod eight;
 mod field;
 pub(crate) mod kept;
-pub(crate) mod lanes;
 pub(crate) mod mend;
 pub(crate) mod moments;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
 pub(crate) mod pseudo_normals;
 pub(crate) mod ridges;
-mod samples;
+pub(crate) mod samples;
 pub(crate) mod winding;
 
 pub use bake::BakeProgress;

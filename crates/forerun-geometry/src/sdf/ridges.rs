@@ -2,8 +2,10 @@
 //!
 //! Promise: every stretch is in a sphere of its block, and as long as the shape is thick at most.
 
-use super::lanes::{Lanes, Lanes3, WIDTH};
-use super::samples::Spheres;
+use forerun_lanes::{LANES, Lanes, Portable, V8};
+
+use super::eight::of_vectors;
+use super::samples::{Spheres, sort_by_place};
 use crate::Vec3;
 
 /// A stretch of an edge.
@@ -17,12 +19,12 @@ pub(crate) struct Ridge {
 }
 
 /// Eight stretches. Those that only fill the block up repeat the last.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EightRidges {
-    pub(crate) from: Lanes3,
-    pub(crate) to: Lanes3,
-    pub(crate) normals: Lanes3,
-    pub(crate) facing_max: Lanes,
+    /// Both ends.
+    pub(crate) ends: [V8<Portable>; 2],
+    pub(crate) normals: V8<Portable>,
+    pub(crate) facing_max: Portable,
     /// The bits of those that are meant.
     pub(crate) meant: u32,
 }
@@ -30,9 +32,9 @@ pub(crate) struct EightRidges {
 /// Stretches in blocks of 8.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Ridges {
-    blocks: Vec<EightRidges>,
+    pub(crate) blocks: Vec<EightRidges>,
     /// Spheres around the blocks: lane l of the k-th eight is block 8 k + l.
-    spheres: Vec<Spheres>,
+    pub(crate) spheres: Vec<Spheres>,
 }
 
 impl Ridge {
@@ -48,47 +50,34 @@ impl Ridge {
 impl Ridges {
     /// Puts neighbours together.
     pub(crate) fn new(mut ridges: Vec<Ridge>) -> Ridges {
-        super::samples::sort_by_place(&mut ridges, |r| (r.ends[0] + r.ends[1]) * 0.5);
-        let blocks: Vec<EightRidges> = ridges.chunks(WIDTH).map(EightRidges::new).collect();
-        let ends: Vec<Vec<Vec3>> =
-            ridges.chunks(WIDTH).map(|block| block.iter().flat_map(|r| r.ends).collect()).collect();
-        let spheres = ends.chunks(WIDTH).map(Spheres::around).collect();
-        Ridges { blocks, spheres }
+        sort_by_place(&mut ridges, |r| (r.ends[0] + r.ends[1]) * 0.5);
+        let mut sorted = Ridges::default();
+        sorted.fill(&ridges);
+        sorted
+    }
+
+    /// Replaces all by the given stretches, in the order given.
+    pub(crate) fn fill(&mut self, ridges: &[Ridge]) {
+        self.blocks.clear();
+        self.blocks.extend(ridges.chunks(LANES).map(EightRidges::new));
+        self.spheres.clear();
+        let eights = ridges.chunks(LANES * LANES);
+        self.spheres.extend(eights.map(|eight| Spheres::around(eight, LANES, |r| r.ends)));
     }
 
     /// Memory that they take.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&*self.blocks) + size_of_val(&*self.spheres)
     }
-
-    /// Calls `visit` with every block that `near` lets through: it is asked about eight spheres at a time.
-    #[inline]
-    pub(crate) fn visit(&self, near: impl Fn(&Spheres) -> u32, mut visit: impl FnMut(&EightRidges)) {
-        for (eight, spheres) in self.spheres.iter().enumerate() {
-            let mut bits = near(spheres);
-            while bits != 0 {
-                visit(&self.blocks[eight * WIDTH + bits.trailing_zeros() as usize]);
-                bits &= bits - 1;
-            }
-        }
-    }
 }
 
 impl EightRidges {
     fn new(ridges: &[Ridge]) -> EightRidges {
-        let lane = |i: usize| &ridges[i.min(ridges.len() - 1)];
-        let block = |part: &dyn Fn(&Ridge) -> Vec3| {
-            let mut block = Lanes3::ZERO;
-            for i in 0..WIDTH {
-                block.set_lane(i, part(lane(i)));
-            }
-            block
-        };
+        let eight: [Ridge; LANES] = std::array::from_fn(|i| ridges[i.min(ridges.len() - 1)]);
         EightRidges {
-            from: block(&|r| r.ends[0]),
-            to: block(&|r| r.ends[1]),
-            normals: block(&|r| r.normal),
-            facing_max: Lanes(std::array::from_fn(|i| lane(i).facing_max)),
+            ends: [0, 1].map(|end| of_vectors(&eight.map(|r| r.ends[end]))),
+            normals: of_vectors(&eight.map(|r| r.normal)),
+            facing_max: Portable::from_array(eight.map(|r| r.facing_max)),
             meant: (1 << ridges.len()) - 1,
         }
     }
@@ -97,6 +86,7 @@ impl EightRidges {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sdf::eight::lane;
 
     #[test]
     fn every_stretch_is_in_the_sphere_of_its_block_and_none_is_lost() {
@@ -111,10 +101,12 @@ mod tests {
         let ridges = Ridges::new(given.clone());
         let mut found = Vec::new();
         for (k, block) in ridges.blocks.iter().enumerate() {
-            let (spheres, l) = (&ridges.spheres[k / WIDTH], k % WIDTH);
-            for i in (0..WIDTH).filter(|i| block.meant >> i & 1 == 1) {
-                let ends = [block.from.lane(i), block.to.lane(i)];
-                assert!(ends.iter().all(|e| e.distance(spheres.centre.lane(l)) <= spheres.radius.0[l]));
+            let (spheres, l) = (&ridges.spheres[k / LANES], k % LANES);
+            for i in (0..LANES).filter(|i| block.meant >> i & 1 == 1) {
+                let ends = block.ends.map(|end| lane(&end, i));
+                assert!(
+                    ends.iter().all(|e| e.distance(lane(&spheres.centre, l)) <= spheres.radius.to_array()[l])
+                );
                 found.push(ends.map(|e| e.to_array().map(f32::to_bits)));
             }
         }

@@ -33,44 +33,68 @@ const RIM: [(f32, f32); 8] = {
     [(1.0, 0.0), (D, D), (0.0, 1.0), (-D, D), (-1.0, 0.0), (-D, -D), (0.0, -1.0), (D, -D)]
 };
 
-/// The points and long edges of a shape in its own frame; none for half-spaces. `gradient` tells which way is away from
-/// the mesh.
-pub(super) fn of<'a>(
-    shape: &Shape,
-    region: &Region,
-    gradient: impl Fn(Vec3) -> Vec3,
-) -> Option<(Points<'a>, Ridges)> {
-    let mut sharp = Sharp { region, points: Vec::new(), ridges: Vec::new() };
-    let round = |balls| Some((Points::Round(balls), Ridges::default()));
-    match shape {
-        Shape::Sphere(s) => return round(vec![RoundPoint { centre: Vec3::ZERO, radius: s.radius }]),
-        Shape::Capsule(c) => return round(capsule(c)),
-        Shape::Cuboid(c) => sharp.cuboid(c),
-        Shape::Cylinder(c) => cylinder(c, gradient, &mut sharp.points),
-        Shape::Hull(hull) => sharp.hull(hull),
-        Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
-    }
-    let Sharp { points, ridges, .. } = sharp;
-    let none = points.is_empty() && ridges.is_empty();
-    if none { None } else { Some((Points::Sharp(Samples::new(points)), Ridges::new(ridges))) }
+/// The points of a primitive in its own frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PointList {
+    /// Of a shape with edges.
+    sharp: Sharp,
+    /// The same, ready to be looked up.
+    samples: Samples,
+    ridges: Ridges,
+    /// Of a rounded shape.
+    round: Vec<RoundPoint>,
+    /// For each corner of a hull the sum of the normals around.
+    normal_sums: Vec<Vec3>,
 }
 
-/// Corners and edges in the making.
-struct Sharp<'a> {
-    region: &'a Region,
+/// Corners, points along edges, and the stretches of edges between them.
+#[derive(Clone, Debug, Default)]
+struct Sharp {
     points: Vec<Sample>,
     ridges: Vec<Ridge>,
 }
 
+impl PointList {
+    pub(super) fn clear(&mut self) {
+        self.sharp.points.clear();
+        self.sharp.ridges.clear();
+        self.round.clear();
+    }
+
+    /// Adds the points of a shape; half-spaces have none. `gradient` tells which way is away from the mesh.
+    pub(super) fn fill(&mut self, shape: &Shape, region: &Region, gradient: impl Fn(Vec3) -> Vec3) {
+        let PointList { sharp, samples, ridges, round, normal_sums } = self;
+        match shape {
+            Shape::Sphere(s) => round.push(RoundPoint { centre: Vec3::ZERO, radius: s.radius }),
+            Shape::Capsule(c) => capsule(c, round),
+            Shape::Cuboid(c) => sharp.cuboid(c, region),
+            Shape::Cylinder(c) => cylinder(c, gradient, &mut sharp.points),
+            Shape::Hull(hull) => sharp.hull(hull, region, normal_sums),
+            Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => {}
+        }
+        samples.fill(&sharp.points);
+        ridges.fill(&sharp.ridges);
+    }
+
+    /// With the long edges; none if there are none.
+    pub(super) fn points(&self) -> Option<(Points<'_>, &Ridges)> {
+        if !self.sharp.points.is_empty() || !self.sharp.ridges.is_empty() {
+            Some((Points::Sharp(&self.samples), &self.ridges))
+        } else if !self.round.is_empty() {
+            Some((Points::Round(&self.round), &self.ridges))
+        } else {
+            None
+        }
+    }
+}
+
 /// Points on the axis, no further apart than half the radius: the balls about them sag less than a thirtieth of it.
-fn capsule(c: &Capsule) -> Vec<RoundPoint> {
+fn capsule(c: &Capsule, points: &mut Vec<RoundPoint>) {
     let parts = (4.0 * c.half_height / c.radius).ceil().clamp(1.0, AXIS_PARTS_MAX);
-    (0..=parts as u32)
-        .map(|k| {
-            let along = 2.0 * (k as f32 / parts) - 1.0;
-            RoundPoint { centre: Vec3::new(0.0, along * c.half_height, 0.0), radius: c.radius }
-        })
-        .collect()
+    points.extend((0..=parts as u32).map(|k| {
+        let along = 2.0 * (k as f32 / parts) - 1.0;
+        RoundPoint { centre: Vec3::new(0.0, along * c.half_height, 0.0), radius: c.radius }
+    }));
 }
 
 /// Fixed points around both rims, and the line down the side that faces the mesh.
@@ -104,41 +128,41 @@ fn cylinder(c: &Cylinder, gradient: impl Fn(Vec3) -> Vec3, points: &mut Vec<Samp
     }
 }
 
-impl Sharp<'_> {
-    fn cuboid(&mut self, c: &Cuboid) {
+impl Sharp {
+    fn cuboid(&mut self, c: &Cuboid, region: &Region) {
         let sign = |signs: u32, axis: u32| if signs >> axis & 1 == 1 { 1.0 } else { -1.0 };
         let corner = |signs: u32| Vec3::new(sign(signs, 0), sign(signs, 1), sign(signs, 2));
-        let spacing = self.region.spacing.min(2.0 * c.half_extents.min_element());
+        let spacing = region.spacing.min(2.0 * c.half_extents.min_element());
         for signs in 0..8 {
             let from = corner(signs);
-            self.vertex(from * c.half_extents, from.normalize());
+            self.vertex(from * c.half_extents, from.normalize(), region);
             for axis in 0..3 {
                 if signs >> axis & 1 == 0 {
                     let to = corner(signs | 1 << axis);
                     let ends = [from * c.half_extents, to * c.half_extents];
-                    self.edge(ends, (from + to).normalize(), spacing);
+                    self.edge(ends, (from + to).normalize(), (region, spacing));
                 }
             }
         }
     }
 
-    fn hull(&mut self, hull: &Hull) {
-        let mut sums = vec![Vec3::ZERO; hull.vertices.len()];
+    fn hull(&mut self, hull: &Hull, region: &Region, sums: &mut Vec<Vec3>) {
+        sums.clear();
+        sums.resize(hull.vertices.len(), Vec3::ZERO);
         for e in &hull.edges {
             let normal = e.faces.map(|f| hull.faces[f as usize].normal).iter().sum::<Vec3>();
             for v in e.vertices {
                 sums[v as usize] += normal;
             }
             let ends = e.vertices.map(|v| hull.vertices[v as usize]);
-            self.edge(ends, normal.normalize_or_zero(), self.region.spacing);
+            self.edge(ends, normal.normalize_or_zero(), (region, region.spacing));
         }
-        for (v, sum) in hull.vertices.iter().zip(sums) {
-            self.vertex(*v, sum.normalize_or_zero());
+        for (v, sum) in hull.vertices.iter().zip(&*sums) {
+            self.vertex(*v, sum.normalize_or_zero(), region);
         }
     }
 
-    fn vertex(&mut self, point: Vec3, normal: Vec3) {
-        let region = self.region;
+    fn vertex(&mut self, point: Vec3, normal: Vec3, region: &Region) {
         if point.distance_squared(region.centre) <= region.radius * region.radius {
             self.points.push(Sample { point, normal, facing_max: Sample::SHARP });
         }
@@ -146,8 +170,7 @@ impl Sharp<'_> {
 
     /// The points that cut an edge into equal parts no longer than `spacing`, and the parts between them, as far as they
     /// are in the region. They stay where they are on the edge when the shape moves.
-    fn edge(&mut self, [a, b]: [Vec3; 2], normal: Vec3, spacing: f32) {
-        let region = self.region;
+    fn edge(&mut self, [a, b]: [Vec3; 2], normal: Vec3, (region, spacing): (&Region, f32)) {
         let (along, length) = (b - a, a.distance(b));
         let parts = (length / spacing).ceil().min(EDGE_PARTS_MAX);
         // Where the edge's line enters and leaves the ball, as parts from a.
@@ -167,8 +190,7 @@ impl Sharp<'_> {
         self.points.extend(inner.map(|k| Sample { point: at(k), normal, facing_max }));
         if enter < leave {
             let stretches = enter as u32..(leave.ceil() as u32).min(parts as u32);
-            let ridge = |k| Ridge { ends: [at(k), at(k + 1)], normal, facing_max };
-            self.ridges.extend(stretches.map(ridge));
+            self.ridges.extend(stretches.map(|k| Ridge { ends: [at(k), at(k + 1)], normal, facing_max }));
         }
     }
 }

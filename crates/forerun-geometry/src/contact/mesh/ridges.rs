@@ -8,14 +8,17 @@
 //! Limit: of several places where one stretch touches the other shape one is found. Stretches are no longer than their
 //! shape is thick, and the other shape has points and stretches of its own there.
 
-use super::Candidate;
+use forerun_lanes::{LANES, Lanes, Portable, V8, dispatched};
+
+use super::candidates::{Block, Candidates};
 use super::directions::Direction;
-use super::look_up::{Answers, Eight};
+use super::look_up::Eight;
 use super::sharp::Answer;
 use crate::Vec3;
-use crate::sdf::lanes::{Lanes, Lanes3, WIDTH};
+use crate::sdf::eight::{lane, of_vectors, transformed};
 use crate::sdf::primitive::Surface;
 use crate::sdf::ridges::EightRidges;
+use crate::sdf::samples::Spheres;
 
 /// How often slopes are followed.
 const STEPS: u32 = 3;
@@ -35,17 +38,81 @@ const INSIDE: f32 = 1e-3;
 const INSIDE_PER_DEPTH: f32 = 1.5;
 
 /// Appends the points of long edges that are near the surface, or will be at the end of the step.
-pub(super) fn find(direction: &Direction, index: usize, candidates: &mut Vec<Candidate>) {
+pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
     // These meet edges at their ends, or see them from their middle.
     if matches!(direction.surface, Surface::HalfSpace | Surface::Sphere(_)) {
         return;
     }
-    direction.ridges.visit(
-        |spheres| {
-            direction.near(spheres.centre.transformed(&direction.axes, direction.origin), spheres.radius)
-        },
-        |ridges| direction.find_between(ridges, index, candidates),
-    );
+    for (eight, spheres) in direction.ridges.spheres.iter().enumerate() {
+        let mut bits = 0;
+        near(direction, spheres, &mut bits);
+        while bits != 0 {
+            let ridges = &direction.ridges.blocks[eight * LANES + bits.trailing_zeros() as usize];
+            direction.follow(ridges, &mut candidates.blocks);
+            bits &= bits - 1;
+        }
+    }
+}
+
+dispatched! {
+    fn near(direction: &Direction, spheres: &Spheres, bits: &mut u32) => near_lanes
+}
+
+#[inline(always)]
+fn near_lanes<F: Lanes>(direction: &Direction, spheres: &Spheres, bits: &mut u32) {
+    *bits = direction.near::<F>(spheres);
+}
+
+dispatched! {
+    /// What the surface says to points of the field's frame.
+    fn ask(direction: &Direction, points: &V8<Portable>, asked: u32, told: &mut Told) => ask_lanes
+}
+
+#[inline(always)]
+fn ask_lanes<F: Lanes>(direction: &Direction, points: &V8<Portable>, asked: u32, told: &mut Told) {
+    let Answer { distance, gradient, .. } = direction.answer::<F>(points.form(), asked);
+    *told = Told { distance: distance.to_array(), gradient: gradient.form() };
+}
+
+dispatched! {
+    /// Appends points that are near; those of `crossing` stretches as their crossings say.
+    fn append(direction: &Direction, points: &Points, blocks: &mut Vec<Block>) => append_lanes
+}
+
+#[inline(always)]
+fn append_lanes<F: Lanes>(direction: &Direction, points: &Points, blocks: &mut Vec<Block>) {
+    let eight = Eight::<F> {
+        points: points.points.form(),
+        outwards: transformed(points.ridges.normals.form(), &direction.axes, Vec3::ZERO),
+        facing_max: F::from_array(points.ridges.facing_max.to_array()),
+    };
+    direction.find_eight(&eight, [points.meant, points.beside], points.crossings.as_ref(), blocks);
+}
+
+/// What the surface says to eight points.
+struct Told {
+    /// Metres.
+    distance: [f32; LANES],
+    gradient: V8<Portable>,
+}
+
+/// Points to be looked up.
+struct Points<'a> {
+    ridges: &'a EightRidges,
+    points: V8<Portable>,
+    /// The bits of those that are asked for.
+    meant: u32,
+    /// The bits of those that have a rim next to them.
+    beside: u32,
+    crossings: Option<Crossings>,
+}
+
+/// Distances and normals of edges that cross.
+pub(super) struct Crossings {
+    /// The bits of the points that are crossings.
+    pub(super) known: u32,
+    pub(super) distance: [f32; LANES],
+    pub(super) normal: [Vec3; LANES],
 }
 
 /// A place on a stretch.
@@ -148,59 +215,52 @@ impl Stretch {
 }
 
 impl Direction<'_> {
-    fn find_between(&self, ridges: &EightRidges, index: usize, candidates: &mut Vec<Candidate>) {
-        let from = ridges.from.transformed(&self.axes, self.origin);
-        let to = ridges.to.transformed(&self.axes, self.origin);
-        let mut stretches: [Stretch; WIDTH] = std::array::from_fn(|i| Stretch::new(from.lane(i), to.lane(i)));
-        let middle = from.plus(to).scaled(Lanes::splat(0.5));
-        let reach =
-            self.reach(middle, Lanes(stretches.map(|s| 0.5 * s.length))) + Lanes::splat(self.blur_depth);
+    /// Appends where some of eight stretches touch.
+    fn follow(&self, ridges: &EightRidges, blocks: &mut Vec<Block>) {
+        let [from, to] = ridges.ends.map(|end| transformed::<Portable>(end, &self.axes, self.origin));
+        let mut stretches: [Stretch; LANES] =
+            std::array::from_fn(|i| Stretch::new(lane(&from, i), lane(&to, i)));
+        let radii = Portable::from_array(stretches.map(|s| 0.5 * s.length));
+        let reach = self.reach((from + to) * Portable::splat(0.5), radii).to_array();
+        let reach = reach.map(|r| r + self.blur_depth);
         self.measure(&mut stretches, |s| s.ends[0].at, ridges.meant, |s, place| s.ends[0] = place);
-        let mut bits = keep(ridges.meant, |i| stretches[i].may_touch(reach.0[i]));
+        let mut bits = keep(ridges.meant, |i| stretches[i].may_touch(reach[i]));
         self.measure(&mut stretches, |s| s.ends[1].at, bits, |s, place| s.ends[1] = place);
-        bits = keep(bits, |i| stretches[i].touches(reach.0[i]));
+        bits = keep(bits, |i| stretches[i].touches(reach[i]));
         if bits == 0 {
             return;
         }
         self.descend(&mut stretches, bits);
-        let eight = |points| Eight {
-            points,
-            outwards: ridges.normals.transformed(&self.axes, Vec3::ZERO),
-            facing_max: ridges.facing_max,
-        };
         for end in [0, 1] {
             let at = stretches.map(|s| s.lies(end));
             let meant = keep(bits, |i| stretches[i].is_between(at[i]));
-            // The rim is next to them.
-            self.find_eight(&eight(points(&stretches, at)), [meant, meant], index, candidates);
+            let points = points(&stretches, at);
+            append(self, &Points { ridges, points, meant, beside: meant, crossings: None }, blocks);
         }
         let meant = keep(bits, |i| stretches[i].is_between(stretches[i].lowest.at));
-        let eight = eight(points(&stretches, stretches.map(|s| s.lowest.at)));
-        let mut answers = self.meet(&eight, 0.0, meant);
-        answers.found &= self.cross(&mut stretches, &mut answers);
-        self.push(&eight, &answers, index, candidates);
-        self.find_eight(&eight, [meant & !answers.found, 0], index, candidates);
+        let points = points(&stretches, stretches.map(|s| s.lowest.at));
+        let crossings = Some(self.crossings(&mut stretches, meant));
+        append(self, &Points { ridges, points, meant, beside: 0, crossings }, blocks);
     }
 
-    /// Puts the normals and distances of edges that cross in the place of what the surface says; the bits of those.
-    fn cross(&self, stretches: &mut [Stretch; WIDTH], answers: &mut Answers) -> u32 {
+    /// Looks at both sides of the lowest places of some of eight stretches.
+    fn crossings(&self, stretches: &mut [Stretch; LANES], bits: u32) -> Crossings {
         for (end, way) in [(0, -1.0), (1, 1.0)] {
             let beside = |s: &Stretch| s.lowest.at + way * s.inside();
-            self.measure(stretches, beside, answers.found, |s, place| s.ends[end] = place);
+            self.measure(stretches, beside, bits, |s, place| s.ends[end] = place);
         }
-        let mut crossing = 0;
-        for (i, s) in stretches.iter().enumerate().filter(|(i, _)| answers.found >> i & 1 == 1) {
+        let mut crossings = Crossings { known: 0, distance: [0.0; LANES], normal: [Vec3::ZERO; LANES] };
+        for (i, s) in stretches.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1) {
             if let Some((normal, distance)) = s.crossing() {
-                answers.normal.set_lane(i, normal);
-                answers.distance.0[i] = distance;
-                crossing |= 1 << i;
+                (crossings.normal[i], crossings.distance[i]) = (normal, distance);
+                crossings.known |= 1 << i;
             }
         }
-        crossing
+        crossings
     }
 
     /// Finds the lowest places of some of eight stretches, and the rims of what they lie on.
-    fn descend(&self, stretches: &mut [Stretch; WIDTH], bits: u32) {
+    fn descend(&self, stretches: &mut [Stretch; LANES], bits: u32) {
         for s in stretches.iter_mut() {
             s.lowest = if s.ends[0].falls(1.0) { s.ends[1] } else { s.ends[0] };
         }
@@ -208,7 +268,8 @@ impl Direction<'_> {
             let tangents = |s: &Stretch| s.ends[0].meets(&s.ends[1]);
             self.measure(stretches, tangents, bits, |s, place| {
                 // Not for nothing: a level stretch is to be seen from its far end.
-                if s.lowest.falls(1.0) || s.lowest.falls(-1.0) || place.distance < s.lowest.distance - LOWER {
+                let on_the_way = s.lowest.falls(1.0) || s.lowest.falls(-1.0);
+                if on_the_way || place.distance < s.lowest.distance - LOWER {
                     s.lowest = place;
                 }
                 if place.falls(1.0) {
@@ -235,7 +296,7 @@ impl Direction<'_> {
     /// Asks for the distance at a place of each of some of eight stretches.
     fn measure(
         &self,
-        stretches: &mut [Stretch; WIDTH],
+        stretches: &mut [Stretch; LANES],
         place: impl Fn(&Stretch) -> f32,
         bits: u32,
         mut tell: impl FnMut(&mut Stretch, Place),
@@ -244,25 +305,22 @@ impl Direction<'_> {
             return;
         }
         let at = std::array::from_fn(|i| place(&stretches[i]));
-        let Answer { distance, gradient, .. } = self.answer(points(stretches, at), bits);
+        let mut told = Told { distance: [0.0; LANES], gradient: V8::zero() };
+        ask(self, &points(stretches, at), bits, &mut told);
         for (i, s) in stretches.iter_mut().enumerate().filter(|(i, _)| bits >> i & 1 == 1) {
+            let (distance, gradient) = (told.distance[i], lane(&told.gradient, i));
             // On an edge or corner of the surface itself there are many slopes.
-            let on_surface = distance.0[i].abs() < ON_SURFACE;
-            let slope = if on_surface { 0.0 } else { gradient.lane(i).dot(s.along) };
-            tell(s, Place { at: at[i], distance: distance.0[i], slope, gradient: gradient.lane(i) });
+            let slope = if distance.abs() < ON_SURFACE { 0.0 } else { gradient.dot(s.along) };
+            tell(s, Place { at: at[i], distance, slope, gradient });
         }
     }
 }
 
-fn points(stretches: &[Stretch; WIDTH], at: [f32; WIDTH]) -> Lanes3 {
-    let mut points = Lanes3::ZERO;
-    for (i, s) in stretches.iter().enumerate() {
-        points.set_lane(i, s.from + s.along * at[i]);
-    }
-    points
+fn points(stretches: &[Stretch; LANES], at: [f32; LANES]) -> V8<Portable> {
+    of_vectors(&std::array::from_fn(|i| stretches[i].from + stretches[i].along * at[i]))
 }
 
 /// Those of some bits that are to be kept.
 fn keep(bits: u32, keeps: impl Fn(usize) -> bool) -> u32 {
-    (0..WIDTH).filter(|i| bits >> i & 1 == 1 && keeps(*i)).fold(0, |kept, i| kept | 1 << i)
+    (0..LANES).filter(|i| bits >> i & 1 == 1 && keeps(*i)).fold(0, |kept, i| kept | 1 << i)
 }

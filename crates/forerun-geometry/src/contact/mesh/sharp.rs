@@ -3,12 +3,13 @@
 //! See [`Blur`]: the corners of two stones that touch would not. There the grid is asked only who is near, and the
 //! triangles how near.
 
-use glam::DVec3;
+use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
 
 use super::directions::Direction;
 use super::look_up::Eight;
+use crate::Vec3;
 use crate::sdf::blur::Blur;
-use crate::sdf::lanes::{Lanes, Lanes3, WIDTH};
+use crate::sdf::eight::{lane, of_vectors};
 use crate::sdf::nearest::Nearest;
 use crate::sdf::primitive::Surface;
 
@@ -16,35 +17,42 @@ use crate::sdf::primitive::Surface;
 const AXIS: f32 = 0.999_99;
 
 /// What a surface says to eight points.
-pub(super) struct Answer {
+pub(super) struct Answer<F> {
     /// Metres.
-    pub(super) distance: Lanes,
+    pub(super) distance: F,
     /// Not quite unit.
-    pub(super) gradient: Lanes3,
+    pub(super) gradient: V8<F>,
     /// The bits of points to which a sharp edge or a corner is nearest.
     pub(super) beside: u32,
+}
+
+/// What triangles say to some of eight points.
+struct Exact {
+    distance: [f32; LANES],
+    gradient: [Vec3; LANES],
+    /// The bits of the points.
+    known: u32,
+    /// See [`Answer::beside`].
+    beside: u32,
 }
 
 impl Direction<'_> {
     /// Asks the surface about eight points of the field's frame: the answers are good where they are `asked` for and
     /// near.
     #[inline(always)]
-    pub(super) fn answer(&self, points: Lanes3, asked: u32) -> Answer {
+    pub(super) fn answer<F: Lanes>(&self, points: V8<F>, asked: u32) -> Answer<F> {
         let (distance, gradient) = self.surface.look_up_some(points, asked);
         let mut answer = Answer { distance, gradient, beside: 0 };
-        if let (Some(blur), Some(skin)) = (self.blur, &self.skin) {
-            let reach = self.reach(points, Lanes::ZERO) + Lanes::splat(self.blur_depth);
-            let near = asked & distance.below(reach).bits();
-            self.in_the_blur(blur, &points, near, |i, point, nearest| {
-                let signed = skin.signed(point, nearest);
-                answer.distance.0[i] = signed.distance as f32;
-                answer.gradient.set_lane(i, signed.gradient);
-                answer.beside |= u32::from(!nearest.is_on_face()) << i;
-            });
+        if let Some(blur) = self.blur {
+            let reach = self.reach(points, F::zero()) + F::splat(self.blur_depth);
+            let near = asked & distance.lt(reach).bits();
+            if near != 0 {
+                answer = answer.but_for(&self.sharp(blur, &points.form(), near));
+            }
         }
         if let Surface::Cuboid(_) = self.surface {
             let [x, y, z] = [gradient.x.abs(), gradient.y.abs(), gradient.z.abs()];
-            answer.beside = x.max(y).max(z).below(Lanes::splat(AXIS)).bits();
+            answer.beside = x.max(y).max(z).lt(F::splat(AXIS)).bits();
         }
         answer
     }
@@ -52,39 +60,79 @@ impl Direction<'_> {
     /// The same for points that lie `back` inside the surface that they are of: next to an edge or corner the side is
     /// meant that faces them best.
     #[inline(always)]
-    pub(super) fn answer_inside(&self, eight: &Eight, back: Lanes3, asked: u32) -> Answer {
-        let points = eight.points.minus(back);
+    pub(super) fn answer_inside<F: Lanes>(&self, eight: &Eight<F>, back: V8<F>, asked: u32) -> Answer<F> {
+        let points = eight.points - back;
         let (distance, gradient) = self.surface.look_up_some(points, asked);
-        let mut answer = Answer { distance, gradient, beside: 0 };
-        if let (Some(blur), Some(skin)) = (self.blur, &self.skin) {
-            self.in_the_blur(blur, &points, asked, |i, point, nearest| {
-                let outwards = eight.outwards.lane(i).as_dvec3();
-                let (distance, normal) = skin.facing(point, nearest, outwards);
-                answer.distance.0[i] = distance;
-                answer.gradient.set_lane(i, normal);
-            });
+        let answer = Answer { distance, gradient, beside: 0 };
+        match self.blur {
+            Some(blur) => answer.but_for(&self.facing(blur, [&points.form(), &eight.outwards.form()], asked)),
+            None => answer,
         }
-        answer
+    }
+
+    #[inline(never)]
+    fn sharp(&self, blur: &Blur, points: &V8<Portable>, asked: u32) -> Exact {
+        let mut exact = Exact::NOTHING;
+        let Some(skin) = &self.skin else { return exact };
+        self.in_the_blur(blur, points, asked, |i, point, nearest| {
+            let signed = skin.signed(point.as_dvec3(), nearest);
+            exact.tell(i, signed.distance as f32, signed.gradient);
+            exact.beside |= u32::from(!nearest.is_on_face()) << i;
+        });
+        exact
+    }
+
+    #[inline(never)]
+    fn facing(&self, blur: &Blur, [points, outwards]: [&V8<Portable>; 2], asked: u32) -> Exact {
+        let mut exact = Exact::NOTHING;
+        let Some(skin) = &self.skin else { return exact };
+        self.in_the_blur(blur, points, asked, |i, point, nearest| {
+            let (distance, normal) = skin.facing(point.as_dvec3(), nearest, lane(outwards, i).as_dvec3());
+            exact.tell(i, distance, normal);
+        });
+        exact
     }
 
     /// Finds what is nearest to those of some points where the field is blurred.
-    #[inline(always)]
     fn in_the_blur(
         &self,
         blur: &Blur,
-        points: &Lanes3,
+        points: &V8<Portable>,
         asked: u32,
-        mut tell: impl FnMut(usize, DVec3, &Nearest),
+        mut tell: impl FnMut(usize, Vec3, &Nearest),
     ) {
         let (Surface::Field(field), Some(skin)) = (&self.surface, &self.skin) else { return };
         let mut guess: Option<Nearest> = None;
-        for i in (0..WIDTH).filter(|i| asked >> i & 1 == 1) {
-            let point = points.lane(i);
+        for i in (0..LANES).filter(|i| asked >> i & 1 == 1) {
+            let point = lane(points, i);
             if blur.is_at(field, point) {
                 let nearest = skin.nearest(point.as_dvec3(), guess.as_ref());
-                tell(i, point.as_dvec3(), &nearest);
+                tell(i, point, &nearest);
                 guess = Some(nearest);
             }
+        }
+    }
+}
+
+impl Exact {
+    const NOTHING: Exact =
+        Exact { distance: [0.0; LANES], gradient: [Vec3::ZERO; LANES], known: 0, beside: 0 };
+
+    fn tell(&mut self, i: usize, distance: f32, gradient: Vec3) {
+        (self.distance[i], self.gradient[i]) = (distance, gradient);
+        self.known |= 1 << i;
+    }
+}
+
+impl<F: Lanes> Answer<F> {
+    /// Better answers in the place of some.
+    #[inline(always)]
+    fn but_for(self, exact: &Exact) -> Answer<F> {
+        let known = F::Mask::from_bits(exact.known);
+        Answer {
+            distance: known.select(F::from_array(exact.distance), self.distance),
+            gradient: known.select_v(of_vectors(&exact.gradient).form(), self.gradient),
+            beside: self.beside | exact.beside,
         }
     }
 }
