@@ -14,7 +14,7 @@ use super::winding::Winding;
 use crate::Vec3;
 use crate::shape::Mesh;
 
-/// Cells in half the thinnest thickness: 4 make the normals good to a degree (2 would still do).
+/// Cells in half the thinnest thickness, or half the narrowest gap: 4 make the normals good to a degree (2 would still do).
 const CELLS_PER_HALF_THICKNESS: f32 = 4.0;
 /// Cells between the surface and the faces of the grid.
 const PADDING: usize = 2;
@@ -96,7 +96,8 @@ impl Grid {
     pub(crate) fn around(mesh: &Mesh, cell: Option<f32>) -> Grid {
         let bounds = mesh.bounds();
         let extent = bounds.max - bounds.min;
-        let wished = cell.unwrap_or(mesh.half_thickness() / CELLS_PER_HALF_THICKNESS);
+        let wished = cell
+            .unwrap_or_else(|| mesh.half_thickness().min(mesh.measure_half_gap()) / CELLS_PER_HALF_THICKNESS);
         // Nodes on all six sides of the box around the mesh: the edges of boxes and plates are met exactly.
         let cells = cells_along(extent, cell_size(extent, wished));
         let cell = extent / Vec3::from_array(cells.map(|n| n as f32));

@@ -9,6 +9,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::crossing::has_crossings;
 use super::kept::Found;
 use super::pseudo_normals::corners;
 use super::winding::Winding;
@@ -74,8 +75,17 @@ impl Areas {
     }
 }
 
-/// Tells what a mesh is the surface of. `cell`: size of the cells that its field will have, about. Metres.
-pub(crate) fn survey(mesh: &Mesh, covers: &Covers, cell: f64) -> Verdict {
+/// Tells what a mesh is the surface of. `shells`: a triangle of each part of it. `cell`: size of the cells that its field will have,
+/// about. Metres.
+pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) -> Verdict {
+    if covers.triangles.is_empty() && !has_crossings(mesh) {
+        let winding = Winding::new(mesh);
+        let walls = Walls { covered: mesh, winding: &winding, beside: BESIDE * cell };
+        // Shells that do not cross are wholly inside of others or wholly outside.
+        if shells.len() < 2 || shells.iter().all(|t| walls.sides(corners(mesh, *t)) == (false, true)) {
+            return Verdict::Sound;
+        }
+    }
     let mut vertices = mesh.vertices.clone();
     vertices.extend(&covers.apexes);
     let mut triangles = mesh.triangles.clone();
@@ -84,11 +94,10 @@ pub(crate) fn survey(mesh: &Mesh, covers: &Covers, cell: f64) -> Verdict {
     let winding = Winding::new(&covered);
     let walls = Walls { covered: &covered, winding: &winding, beside: BESIDE * cell };
     // Nothing that is as thick as the mesh passes between points that are half as far apart.
-    let coarse = walls.areas(f64::from(mesh.half_thickness()).max(2.0 * cell));
-    if covers.triangles.is_empty() && coarse.iter().all(|a| !a.mixed() && a.reversed <= 0.0) {
-        return Verdict::Sound;
+    let mut areas = walls.areas(f64::from(mesh.half_thickness()).max(2.0 * cell));
+    if areas.iter().any(Areas::mixed) {
+        areas = walls.areas(walls.piece_size(&areas, 2.0 * cell));
     }
-    let areas = walls.areas(walls.piece_size(&coarse, 2.0 * cell));
     let Some(found) = judge(&areas, mesh.triangles.len()) else { return Verdict::Hopeless };
     let size = walls.piece_size(&areas, cell);
     let surface = walls.surface(&areas, size);

@@ -1,23 +1,42 @@
 //! Directions: whose points are looked up in whose field.
 
+use forerun_lanes::{Lanes, V8};
 use glam::Mat3;
 
 use super::{MOTION_AHEAD, NEAR};
 use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
-use crate::sdf::lanes::Lanes3;
+use crate::sdf::eight::splat;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
 use crate::shape::{Enclosure, Mesh};
 use crate::{Pose, Shape, Vec3};
 
-use super::points::{self, Region, RoundPoint};
+use super::points::{PointList, Region, RoundPoint};
 
 /// See [`Direction::inset`]; as part of half the thickness of the shape.
 const INSET_PART: f32 = 0.25;
 
+/// Which of the two directions of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// Points of the first shape in the field of the second.
+    There = 0,
+    /// Points of the second shape in the field of the first.
+    Back = 1,
+}
+
+/// What is worked out anew for each pair of a mesh and another shape: the points and planes of the other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Primitives {
+    points: PointList,
+    /// Of a hull, see [`Surface::Hull`].
+    planes: Vec<(Vec3, f32)>,
+}
+
 /// Points of one shape to be looked up in the field of another.
 pub(super) struct Direction<'a> {
+    pub(super) way: Way,
     /// The points, in their own frame.
     pub(super) points: Points<'a>,
     /// What they are looked up in.
@@ -38,16 +57,25 @@ pub(super) struct Direction<'a> {
     pub(super) goes: Going,
     /// How the field is.
     pub(super) comes: Going,
-    /// What moves by x against the other comes nearer to it than the tangents say by up to this times x²: surfaces are bent. 1/m
+    /// What moves by x against the other comes nearer to it than tangents say by up to this times x²: surfaces are bent. 1/m
     pub(super) bend: f32,
-    /// 1 if the field is the first shape's: its gradient then points to the second; -1 otherwise.
-    pub(super) sign: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
     pub(super) inset: f32,
     /// Points closer than this count, or that will be closer at the end of the step. Metres.
     pub(super) near: f32,
     /// Points farther than this do not count. Metres.
     pub(super) margin: f32,
+}
+
+impl Direction<'_> {
+    /// What turns the field's gradient into the normal from the first shape to the second: it leads away from the shape whose field it is.
+    #[inline(always)]
+    pub(super) fn sign(&self) -> f32 {
+        match self.way {
+            Way::There => -1.0,
+            Way::Back => 1.0,
+        }
+    }
 }
 
 /// A motion in the field's frame, with some to spare: a point x is about to move by `drift + spin × x`.
@@ -68,35 +96,68 @@ impl Going {
 
     /// The motion of points of the field's frame. Metres.
     #[inline(always)]
-    pub(super) fn at(&self, points: Lanes3) -> Lanes3 {
-        let (w, p) = (self.spin, points);
-        let spun = Lanes3 { x: p.z * w.y - p.y * w.z, y: p.x * w.z - p.z * w.x, z: p.y * w.x - p.x * w.y };
-        spun.plus(Lanes3::splat(self.drift))
+    pub(super) fn at<F: Lanes>(&self, points: V8<F>) -> V8<F> {
+        splat::<F>(self.spin).cross(points) + splat(self.drift)
     }
 }
 
 /// Points of a surface.
+#[derive(Clone, Copy)]
 pub(super) enum Points<'a> {
-    /// Of a mesh, in a hierarchy.
-    Mesh(&'a Samples),
-    /// Of a primitive: corners and points along edges.
-    Sharp(Samples),
+    /// Corners and points along edges.
+    Sharp(&'a Samples),
     /// Of a rounded primitive: points along its axis, each with a radius.
-    Round(Vec<RoundPoint>),
+    Round(&'a [RoundPoint]),
 }
 
 /// The directions of two shapes: the points of the first in the field of the second, then the other way round, as far
 /// as there are points and fields. `margin`: metres.
-pub(super) fn between<'a>(first: &Placed<'a>, second: &Placed<'a>, margin: f32) -> Vec<Direction<'a>> {
-    let there = direction(first, second, margin, -1.0);
-    let back = direction(second, first, margin, 1.0);
-    there.into_iter().chain(back).collect()
+pub(super) fn between<'a>(
+    first: &Placed<'a>,
+    second: &Placed<'a>,
+    margin: f32,
+    memory: &'a mut Primitives,
+) -> [Option<Direction<'a>>; 2] {
+    memory.planes.clear();
+    for shape in [first.shape, second.shape] {
+        if let Shape::Hull(hull) = shape {
+            hull_planes(hull, &mut memory.planes);
+        }
+    }
+    memory.points.clear();
+    for (sampled, field) in [(first, second), (second, first)] {
+        if let (shape, Shape::Mesh(mesh)) = (sampled.shape, field.shape) {
+            let surface = mesh_surface(mesh, 2.0 * shape.half_thickness());
+            let to_field = field.pose.inverse() * sampled.pose;
+            let region = region_of(mesh, &to_field.inverse(), margin);
+            let gradient = |p: Vec3| {
+                let (_, g) = surface.exact(to_field.transform_point(p), None, &mut None);
+                to_field.inverse_transform_vector(g)
+            };
+            memory.points.fill(shape, &region, gradient);
+        }
+    }
+    [
+        direction([first, second], Way::There, margin, memory),
+        direction([second, first], Way::Back, margin, memory),
+    ]
 }
 
 /// Points of `sampled` in the field of `field`; none if `sampled` has no points.
-fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f32) -> Option<Direction<'a>> {
-    let to_field = field.pose.inverse() * sampled.pose;
-    let surface = surface_of(field.shape, 2.0 * sampled.shape.half_thickness())?;
+fn direction<'a>(
+    [sampled, field]: [&Placed<'a>; 2],
+    way: Way,
+    margin: f32,
+    memory: &'a Primitives,
+) -> Option<Direction<'a>> {
+    let points = match (sampled.shape, field.shape) {
+        (Shape::Mesh(mesh), _) => Points::Sharp(&mesh.collider().samples),
+        _ => memory.points.points()?,
+    };
+    let surface = match field.shape {
+        Shape::Mesh(mesh) => mesh_surface(mesh, 2.0 * sampled.shape.half_thickness()),
+        shape => primitive_surface(shape, &memory.planes)?,
+    };
     // The triangles of a mended mesh do not tell its sides.
     let (skin, blur) = match field.shape {
         Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
@@ -104,19 +165,9 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         }
         _ => (None, 0.0),
     };
-    let points = match (sampled.shape, field.shape) {
-        (Shape::Mesh(mesh), _) => Points::Mesh(&mesh.collider().samples),
-        (shape, Shape::Mesh(mesh)) => {
-            let region = region_of(mesh, &to_field.inverse(), margin);
-            let gradient = |p: Vec3| {
-                let (_, g) = surface.exact(to_field.transform_point(p), None, &mut None);
-                to_field.inverse_transform_vector(g)
-            };
-            points::of(shape, &region, gradient)?
-        }
-        _ => return None,
-    };
+    let to_field = field.pose.inverse() * sampled.pose;
     Some(Direction {
+        way,
         points,
         surface,
         skin,
@@ -127,35 +178,42 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         field_axes: field.pose.axes(),
         goes: Going::new(&sampled.motion, &field.pose),
         comes: Going::new(&field.motion, &field.pose),
-        bend: bend(sampled.shape) + bend(field.shape),
-        sign,
+        bend: bend(sampled.shape, field.shape),
         inset: INSET_PART * sampled.shape.half_thickness(),
         near: NEAR.min(margin),
         margin,
     })
 }
 
-/// The field of a shape; none for compounds, whose parts have one each. `depth_limit`: see [`Surface::Sheet`].
-fn surface_of(shape: &Shape, depth_limit: f32) -> Option<Surface<'_>> {
+/// The field of a mesh. `depth_limit`: see [`Surface::Sheet`].
+fn mesh_surface(mesh: &Mesh, depth_limit: f32) -> Surface<'_> {
+    match &mesh.collider().field {
+        Some(field) => Surface::Field(field),
+        None => Surface::Sheet(Skin::of(mesh), depth_limit),
+    }
+}
+
+/// The field of a primitive, `planes` being those of a hull; none for compounds, whose parts have one each.
+fn primitive_surface<'a>(shape: &Shape, planes: &'a [(Vec3, f32)]) -> Option<Surface<'a>> {
     Some(match shape {
         Shape::Sphere(s) => Surface::Sphere(s.radius),
         Shape::Cuboid(c) => Surface::Cuboid(*c),
         Shape::Capsule(c) => Surface::Capsule(*c),
         Shape::Cylinder(c) => Surface::Cylinder(*c),
-        Shape::Hull(hull) => Surface::Hull(hull_planes(hull)),
+        Shape::Hull(_) => Surface::Hull(planes),
         Shape::HalfSpace => Surface::HalfSpace,
-        Shape::Compound(_) => return None,
-        Shape::Mesh(mesh) => match &mesh.collider().field {
-            Some(field) => Surface::Field(field),
-            None => Surface::Sheet(Skin::of(mesh), depth_limit),
-        },
+        Shape::Compound(_) | Shape::Mesh(_) => return None,
     })
 }
 
-/// See [`Direction::bend`]: half of one over the radius of the bends that matter, taken to be that of the mesh. What primitives there are is convex, and flat
-/// enough: what moves past comes no nearer than their tangents say.
-fn bend(shape: &Shape) -> f32 {
-    if let Shape::Mesh(mesh) = shape { 0.5 / mesh.collider().radius } else { 0.0 }
+/// See [`Direction::bend`]: half of one over the radius of the bends that matter, for each of two meshes taken to be its own. Beside what is flat or convex
+/// tangents tell the truth, but for turns.
+fn bend(sampled: &Shape, field: &Shape) -> f32 {
+    let of = |mesh: &Mesh| 0.5 / mesh.collider().radius;
+    match (sampled, field) {
+        (Shape::Mesh(sampled), Shape::Mesh(field)) => of(sampled) + of(field),
+        _ => 0.0,
+    }
 }
 
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.
