@@ -55,7 +55,7 @@ fn dominoes_of_triangles_fall_like_boxes() {
         })
     };
     let (boxes, meshes) = (falls(cuboid), falls(block));
-    let (boxes, meshes) = (boxes.expect("boxes fall"), meshes.expect("meshes fall"));
+    let (boxes, meshes): (u32, u32) = (boxes.expect("boxes fall"), meshes.expect("meshes fall"));
     assert!(boxes.abs_diff(meshes) <= boxes / 10, "after {boxes} frames as boxes, {meshes} as meshes");
 }
 
