@@ -6,15 +6,17 @@ use glam::Mat3;
 use super::{MOTION_AHEAD, NEAR};
 use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
+use crate::sdf::blur::Blur;
 use crate::sdf::eight::splat;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
+use crate::sdf::ridges::Ridges;
 use crate::shape::{Enclosure, Mesh};
 use crate::{Pose, Shape, Vec3};
 
 use super::points::{PointList, Region, RoundPoint};
 
-/// See [`Direction::inset`]; as part of half the thickness of the shape.
+/// See [`Direction::inset`]; as part of half the thickness of the thinner shape.
 const INSET_PART: f32 = 0.25;
 
 /// Which of the two directions of a pair.
@@ -39,12 +41,16 @@ pub(super) struct Direction<'a> {
     pub(super) way: Way,
     /// The points, in their own frame.
     pub(super) points: Points<'a>,
+    /// Long edges of the same shape.
+    pub(super) ridges: &'a Ridges,
     /// What they are looked up in.
     pub(super) surface: Surface<'a>,
     /// The triangles of the surface if it is a mesh.
     pub(super) skin: Option<Skin<'a>>,
-    /// By how much the surface may take edges and corners to be farther away than they are. Metres.
-    pub(super) blur: f32,
+    /// Where the field blurs the edges of the surface.
+    pub(super) blur: Option<&'a Blur>,
+    /// By how much the field may take them to be farther away than they are. Metres.
+    pub(super) blur_depth: f32,
     /// From the frame of the points to that of the field: rotation.
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
@@ -172,8 +178,8 @@ fn direction<'a>(
     (way, margin): (Way, f32),
     memory: &'a Primitives,
 ) -> Option<Direction<'a>> {
-    let points = match (sampled.shape, field.shape) {
-        (Shape::Mesh(mesh), _) => Points::Sharp(&mesh.collider().samples),
+    let (points, ridges) = match sampled.shape {
+        Shape::Mesh(mesh) => (Points::Sharp(&mesh.collider().samples), &mesh.collider().ridges),
         _ => memory.points.points()?,
     };
     let surface = match field.shape {
@@ -183,18 +189,20 @@ fn direction<'a>(
     // The triangles of a mended mesh do not tell its sides.
     let (skin, blur) = match field.shape {
         Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
-            (Some(Skin::of(mesh)), mesh.collider().blur)
+            (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.is_any()))
         }
-        _ => (None, 0.0),
+        _ => (None, None),
     };
     let into_field = field_axes.transpose();
     let at = field.pose.position;
     Some(Direction {
         way,
         points,
+        ridges,
         surface,
         skin,
         blur,
+        blur_depth: blur.map_or(0.0, |b| b.depth),
         axes: into_field * sampled_axes,
         origin: into_field * (sampled.pose.position - at),
         field_position: at,
@@ -202,7 +210,7 @@ fn direction<'a>(
         goes: Going::new(&sampled.motion, at, &into_field),
         comes: Going::new(&field.motion, at, &into_field),
         bend: bend(sampled.shape) + bend(field.shape),
-        inset: INSET_PART * sampled.shape.half_thickness(),
+        inset: INSET_PART * sampled.shape.half_thickness().min(field.shape.half_thickness()),
         near: NEAR.min(margin),
         margin,
     })

@@ -5,6 +5,8 @@ use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched};
 use super::candidates::{Block, Candidates};
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
+use super::ridges::Crossings;
+use super::sharp::Answer;
 use crate::Vec3;
 use crate::sdf::eight::{normalized, of_vectors, splat, transformed};
 use crate::sdf::primitive::{LookUp, Surface};
@@ -25,11 +27,11 @@ const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
 const BESIDE: f32 = 0.005;
 
 /// Points with their outward normals, in the field's frame.
-struct Eight<F> {
-    points: V8<F>,
-    outwards: V8<F>,
+pub(super) struct Eight<F> {
+    pub(super) points: V8<F>,
+    pub(super) outwards: V8<F>,
     /// See [`Sample::facing_max`](crate::sdf::Sample::facing_max).
-    facing_max: F,
+    pub(super) facing_max: F,
 }
 
 /// What the field says to them.
@@ -40,6 +42,29 @@ struct Answers<F> {
     found: u32,
     /// The bits of those near or inside the surface that do not face it well.
     doubtful: u32,
+}
+
+impl<F: Lanes> Answers<F> {
+    /// Puts what is known of crossings in the place of what the surface says.
+    #[inline(always)]
+    fn put(&mut self, crossings: &Crossings) {
+        let known = F::Mask::from_bits(crossings.known);
+        self.distance = known.select(F::from_array(crossings.distance), self.distance);
+        self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
+        self.doubtful &= !crossings.known;
+    }
+}
+
+/// What is asked about eight points, and what the surface says to them at first.
+pub(super) struct Query<'a, F> {
+    /// Distances and gradients.
+    pub(super) told: (F, V8<F>),
+    /// The bits of the points that are meant.
+    pub(super) meant: u32,
+    /// The bits of those that are to be doubted.
+    pub(super) doubted: u32,
+    /// What is known better of crossings of edges.
+    pub(super) crossings: Option<&'a Crossings>,
 }
 
 /// Appends the points of the direction that are near the surface, or will be at the end of the step.
@@ -77,24 +102,11 @@ fn find_sharp_lanes<F: Lanes, S: LookUp>(
     for &leaf in &*leaves {
         let (leaf, meant) = samples.leaf(leaf as usize);
         let points = transformed::<F>(leaf.points.form(), &direction.axes, direction.origin);
-        let Some(answer) = surface.look_up_near(points, direction.margin + direction.blur) else { continue };
-        let answer = direction.sharpened(points, answer, meant, 0.0);
+        let limit = direction.margin + direction.blur_depth;
+        let Some(told) = surface.look_up_near(points, meant, limit) else { continue };
         let outwards = transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO);
         let eight = Eight { points, outwards, facing_max: F::from_array(leaf.facing_max.to_array()) };
-        let mut there = direction.judge(&eight, answer, V8::zero(), meant);
-        if there.doubtful != 0 && direction.inset > 0.0 {
-            // Further inside their own surface the face that the points have come through is the nearest one even for
-            // the corners of a box that stands exactly on another of the same size.
-            let back = outwards * F::splat(direction.inset);
-            let (at, asked) = (points - back, there.doubtful);
-            let answer = direction.sharpened(at, surface.look_up(at), asked, direction.inset);
-            let mut inside = direction.judge(&eight, answer, back, asked);
-            // Better than an answer that is good enough is only one without doubt.
-            inside.found &= !inside.doubtful | !there.found;
-            there.found &= !inside.found;
-            direction.push(&eight, &inside, 0, blocks);
-        }
-        direction.push(&eight, &there, there.found, blocks);
+        direction.find_eight(surface, &eight, &Query { told, meant, doubted: 0, crossings: None }, blocks);
     }
 }
 
@@ -130,16 +142,41 @@ fn push_bits(block: usize, mut bits: u32, list: &mut Vec<u32>) {
 }
 
 impl Direction<'_> {
+    /// Appends those of eight points that are meant and near, crossings of edges as they say themselves.
+    #[inline(always)]
+    pub(super) fn find_eight<F: Lanes, S: LookUp>(
+        &self,
+        surface: &S,
+        eight: &Eight<F>,
+        query: &Query<F>,
+        blocks: &mut Vec<Block>,
+    ) {
+        let answer = self.sharpened(eight.points, query.told, query.meant);
+        let mut there = self.judge(eight, answer, V8::zero(), query.meant);
+        there.doubtful |= query.doubted & there.found;
+        if let Some(crossings) = query.crossings {
+            there.put(crossings);
+        }
+        if there.doubtful != 0 && self.inset > 0.0 {
+            // Further inside their own surface the face that the points have come through is the nearest one even for
+            // the corners of a box that stands exactly on another of the same size.
+            let back = eight.outwards * F::splat(self.inset);
+            let answer = self.answer_inside(surface, eight, back, there.doubtful);
+            let mut inside = self.judge(eight, answer, back, there.doubtful);
+            // Better than an answer that is good enough is only one without doubt.
+            inside.found &= !inside.doubtful | !there.found;
+            there.found &= !inside.found;
+            self.push(eight, &inside, 0, blocks);
+        }
+        let rough = if self.blur.is_some() { 0 } else { there.found };
+        self.push(eight, &there, rough, blocks);
+    }
+
     /// What is to be made of the answers of the field to some of eight points, given `back` (metres) from them. The answers are carried
     /// to the points along the normals found.
     #[inline(always)]
-    fn judge<F: Lanes>(
-        &self,
-        eight: &Eight<F>,
-        (distance, gradient): (F, V8<F>),
-        back: V8<F>,
-        asked: u32,
-    ) -> Answers<F> {
+    fn judge<F: Lanes>(&self, eight: &Eight<F>, answer: Answer<F>, back: V8<F>, asked: u32) -> Answers<F> {
+        let Answer { distance, gradient, beside } = answer;
         let normal = normalized(gradient);
         let distance = distance + normal.dot(back);
         let closing = self.closing_at(eight.points, normal);
@@ -149,7 +186,7 @@ impl Direction<'_> {
             & (distance + closing).lt(F::splat(self.near))
             & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
         let well = facing.lt(F::splat(FACING_WELL)).bits();
-        let doubtful = (near & distance.lt(F::splat(BESIDE))).bits() & asked & !well;
+        let doubtful = (near & distance.lt(F::splat(BESIDE))).bits() & asked & (beside | !well);
         Answers { distance, normal, found: (near & found).bits() & asked, doubtful }
     }
 
@@ -164,7 +201,7 @@ impl Direction<'_> {
             // What lies on a plane is pushed off it at a right angle, whatever interpolation says of its rim.
             let flat = eight.facing_max.le(F::splat(FLAT_MAX));
             normal = flat.select_v(-eight.outwards, normal);
-            rough &= if self.blur > 0.0 { 0 } else { !flat.bits() };
+            rough &= !flat.bits();
         }
         let found = F::Mask::from_bits(answers.found);
         let midpoint = eight.points - normal * (F::splat(0.5) * answers.distance);
@@ -183,10 +220,10 @@ impl Direction<'_> {
 
     /// The bits of the spheres that may hold points that count.
     #[inline(always)]
-    fn near<F: Lanes, S: LookUp>(&self, surface: &S, spheres: &Spheres) -> u32 {
+    pub(super) fn near<F: Lanes, S: LookUp>(&self, surface: &S, spheres: &Spheres) -> u32 {
         let radii = F::from_array(spheres.radius.to_array());
         let centres = transformed(spheres.centre.form::<F>(), &self.axes, self.origin);
-        let near = self.reach(centres, radii) + F::splat(self.blur);
+        let near = self.reach(centres, radii) + F::splat(self.blur_depth);
         (surface.lower_bound(centres) - radii).lt(near).bits()
     }
 
