@@ -8,6 +8,7 @@ use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
 use super::accuracy::FieldError;
 use super::blocks::{self, Blocks};
 use super::eight::{lane, normalized, splat};
+use super::primitive::LookUp;
 use crate::{Aabb, Vec3};
 
 /// Signed distances in 16 bits at the nodes of a grid, read by trilinear interpolation.
@@ -72,6 +73,18 @@ impl Field {
         point.cmpge(bounds.min).all() && point.cmple(bounds.max).all()
     }
 
+    /// Number of cells along x, y and z.
+    pub(crate) fn cells(&self) -> [usize; 3] {
+        self.size.map(|n| n - 1)
+    }
+
+    /// The cell that a point is in; the nearest one for a point beyond the grid.
+    pub(crate) fn cell_of(&self, point: Vec3) -> [usize; 3] {
+        let place = (point - self.origin) / self.cell;
+        // Casts saturate, and what is not a number becomes 0.
+        [0, 1, 2].map(|k| (place[k] as usize).min(self.size[k] - 2))
+    }
+
     /// Memory that the nodes take.
     #[must_use]
     pub fn bytes(&self) -> usize {
@@ -91,73 +104,21 @@ impl Field {
     /// Gradient by central differences over a cell: smooth where the trilinear one jumps from cell to cell.
     #[must_use]
     pub fn smooth_gradient(&self, point: Vec3) -> Vec3 {
-        let taps = self.taps(point);
-        let (distances, _) = self.look_up::<Portable>(V8::from_arrays(taps.map(|[a, b, c, d, e, f]| {
-            // A look-up is of eight: the last two are not wanted.
-            [a, b, c, d, e, f, f, f]
-        })));
-        let [a, b, c, d, e, f, ..] = distances.to_array();
-        self.difference([a, b, c, d, e, f])
+        lane(&self.differences::<Portable>(splat(point)), 0)
     }
 
-    /// Where the distances are asked that central differences at a point are made of, by component: half a cell to either side along x, y and z.
+    /// [`Field::smooth_gradient`] at eight points.
     #[inline(always)]
-    pub(crate) fn taps(&self, p: Vec3) -> [[f32; 6]; 3] {
-        let h = self.cell * 0.5;
-        [
-            [p.x + h.x, p.x - h.x, p.x, p.x, p.x, p.x],
-            [p.y, p.y, p.y + h.y, p.y - h.y, p.y, p.y],
-            [p.z, p.z, p.z, p.z, p.z + h.z, p.z - h.z],
-        ]
-    }
-
-    /// The gradient, from the distances at [`Field::taps`].
-    #[inline(always)]
-    pub(crate) fn difference(&self, d: [f32; 6]) -> Vec3 {
-        Vec3::new(d[0] - d[1], d[2] - d[3], d[4] - d[5]) / self.cell
-    }
-
-    /// [`Field::distance_and_gradient`] at eight points.
-    #[inline(always)]
-    pub(crate) fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>) {
-        let place = self.place(points);
-        let [[a, b], [c, d], [e, f], [g, h]] = F::gather_pairs(&self.nodes, &place.base, &self.rows());
-        let (fx, fy, fz) = (place.fraction.x, place.fraction.y, place.fraction.z);
-        let (ab, cd, ef, gh) = (b - a, d - c, f - e, h - g);
-        let (y0, y1, y2, y3) = (a + fx * ab, c + fx * cd, e + fx * ef, g + fx * gh);
-        let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
-        let distance = (z0 + fz * (z1 - z0)) * F::splat(self.scale);
-        let (x0, x1) = (ab + fy * (cd - ab), ef + fy * (gh - ef));
-        let (s0, s1) = (y1 - y0, y3 - y2);
-        let slope = splat::<F>(Vec3::splat(self.scale) / self.cell);
-        let gradient = V8 { x: x0 + fz * (x1 - x0), y: s0 + fz * (s1 - s0), z: z1 - z0 }.times(slope);
-        let gradient = if self.blocks.is_some() { gradient * place.step } else { gradient };
-        // Not "outside where above 0": points that are not numbers are not inside.
-        let inside = place.offset.dot(place.offset).lt(F::splat(f32::MIN_POSITIVE));
-        if inside.bits() == ALL {
-            return (distance, gradient);
+    pub(crate) fn differences<F: Lanes>(&self, points: V8<F>) -> V8<F> {
+        let (step, cell, none) = (splat::<F>(self.cell * 0.5), splat::<F>(self.cell), F::zero());
+        let mut along = [none; 3];
+        for (axis, half) in [step.x, step.y, step.z].into_iter().enumerate() {
+            let mut steps = [none; 3];
+            steps[axis] = half;
+            let step = V8 { x: steps[0], y: steps[1], z: steps[2] };
+            along[axis] = self.look_up(points + step).0 - self.look_up(points - step).0;
         }
-        // The surface point y that q, the nearest point of the box, sees: p - y = offset + phi(q) grad phi(q).
-        let away = place.offset + normalized(gradient) * distance.max(F::zero());
-        (inside.select(distance, away.length()), inside.select_v(gradient, normalized(away)))
-    }
-
-    /// Lower bounds of the signed distance at eight points, exact (but for the grid) inside the grid's box.
-    ///
-    /// Beyond the box, with o the offset from its nearest point q: the surface lies inside the box, which is convex,
-    /// so no point of it is nearer than the square root of o² + phi(q)².
-    #[inline(always)]
-    pub(crate) fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F {
-        let place = self.place(points);
-        let [[a, b], [c, d], [e, f], [g, h]] = F::gather_pairs(&self.nodes, &place.base, &self.rows());
-        let (fx, fy, fz) = (place.fraction.x, place.fraction.y, place.fraction.z);
-        let (y0, y1, y2, y3) = (a + fx * (b - a), c + fx * (d - c), e + fx * (f - e), g + fx * (h - g));
-        let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
-        let distance = (z0 + fz * (z1 - z0)) * F::splat(self.scale);
-        let offset_squared = place.offset.dot(place.offset);
-        let inside = offset_squared.lt(F::splat(f32::MIN_POSITIVE));
-        let positive = distance.max(F::zero());
-        inside.select(distance, (offset_squared + positive * positive).sqrt())
+        V8 { x: along[0] / cell.x, y: along[1] / cell.y, z: along[2] / cell.z }
     }
 
     /// From the lowest node of a cell to the rows of nodes along its four edges in the direction of x.
@@ -165,6 +126,22 @@ impl Field {
     pub(super) fn rows(&self) -> [u32; 4] {
         let (row, layer) = (self.size[0] as u32, (self.size[0] * self.size[1]) as u32);
         if self.blocks.is_some() { blocks::ROWS } else { [0, row, layer, layer + row] }
+    }
+
+    #[inline(always)]
+    fn cell_at<F: Lanes>(&self, place: &Place<F>) -> Cells<F> {
+        let [[a, b], [c, d], [e, f], [g, h]] = F::gather_pairs(&self.nodes, &place.base, &self.rows());
+        let (fx, fy, fz) = (place.fraction.x, place.fraction.y, place.fraction.z);
+        let (ab, cd, ef, gh) = (b - a, d - c, f - e, h - g);
+        let (y0, y1, y2, y3) = (a + fx * ab, c + fx * cd, e + fx * ef, g + fx * gh);
+        let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
+        Cells {
+            distance: (z0 + fz * (z1 - z0)) * F::splat(self.scale),
+            fraction: place.fraction,
+            along_x: [ab, cd, ef, gh],
+            on_x: [y0, y1, y2, y3],
+            on_faces: [z0, z1],
+        }
     }
 
     #[inline(always)]
@@ -196,6 +173,84 @@ impl Field {
         let below = (inside - F::splat(0.5) + F::splat(ROUND)) - F::splat(ROUND);
         let index = below.min(F::splat(cells - 1.0));
         (index, inside - index, (u - inside) * F::splat(self.cell[axis]))
+    }
+}
+
+impl LookUp for Field {
+    #[inline(always)]
+    fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>) {
+        let place = self.place(points);
+        let cell = self.cell_at(&place);
+        cell.answer(&place, cell.gradient(self, &place))
+    }
+
+    /// Far from the surface, as most points are, the gradient is not worked out.
+    #[inline(always)]
+    fn look_up_near<F: Lanes>(&self, points: V8<F>, asked: u32, limit: f32) -> Option<(F, V8<F>)> {
+        let place = self.place(points);
+        let cell = self.cell_at(&place);
+        if place.inside().bits() == ALL {
+            let near = cell.distance.lt(F::splat(limit)).bits() & asked != 0;
+            return if near { Some((cell.distance, cell.gradient(self, &place))) } else { None };
+        }
+        Some(cell.answer(&place, cell.gradient(self, &place)))
+    }
+
+    /// Beyond the grid's box, with o the offset from its nearest point q: the surface lies inside the box, which is
+    /// convex, so no point of it is nearer than the square root of o² + phi(q)².
+    #[inline(always)]
+    fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F {
+        let place = self.place(points);
+        let distance = self.cell_at(&place).distance;
+        let positive = distance.max(F::zero());
+        place.inside().select(distance, (place.offset.dot(place.offset) + positive * positive).sqrt())
+    }
+}
+
+impl<F: Lanes> Place<F> {
+    /// Which points are inside the grid's box. Not "outside where above 0": points that are not numbers are not inside.
+    #[inline(always)]
+    fn inside(&self) -> F::Mask {
+        self.offset.dot(self.offset).lt(F::splat(f32::MIN_POSITIVE))
+    }
+}
+
+/// What the corners of eight cells say of points in them.
+struct Cells<F> {
+    /// By trilinear interpolation. Metres.
+    distance: F,
+    /// Position in the cell, 0 to 1.
+    fraction: V8<F>,
+    /// Differences along the four edges in the direction of x.
+    along_x: [F; 4],
+    /// Values on these edges.
+    on_x: [F; 4],
+    /// Values in the middle of the two faces across z.
+    on_faces: [F; 2],
+}
+
+impl<F: Lanes> Cells<F> {
+    #[inline(always)]
+    fn gradient(&self, field: &Field, place: &Place<F>) -> V8<F> {
+        let ([ab, cd, ef, gh], [y0, y1, y2, y3], [z0, z1]) = (self.along_x, self.on_x, self.on_faces);
+        let (fy, fz) = (self.fraction.y, self.fraction.z);
+        let (x0, x1) = (ab + fy * (cd - ab), ef + fy * (gh - ef));
+        let (s0, s1) = (y1 - y0, y3 - y2);
+        let slope = splat::<F>(Vec3::splat(field.scale) / field.cell);
+        let gradient = V8 { x: x0 + fz * (x1 - x0), y: s0 + fz * (s1 - s0), z: z1 - z0 }.times(slope);
+        if field.blocks.is_some() { gradient * place.step } else { gradient }
+    }
+
+    /// Distance and gradient, beyond the grid's box too.
+    #[inline(always)]
+    fn answer(&self, place: &Place<F>, gradient: V8<F>) -> (F, V8<F>) {
+        let inside = place.inside();
+        if inside.bits() == ALL {
+            return (self.distance, gradient);
+        }
+        // The surface point y that q, the nearest point of the box, sees: p - y = offset + phi(q) grad phi(q).
+        let away = place.offset + normalized(gradient) * self.distance.max(F::zero());
+        (inside.select(self.distance, away.length()), inside.select_v(gradient, normalized(away)))
     }
 }
 

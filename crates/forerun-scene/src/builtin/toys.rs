@@ -20,7 +20,7 @@ const MUG: MugEntry = MugEntry {
     thickness: 0.06,
     handle_radius: 0.06,
     handle_reach: 0.28,
-    segments: 32,
+    segments: 48,
 };
 
 fn with_mesh(scene: &mut Scene, name: &str, entry: impl Into<MeshEntry>) {
@@ -144,9 +144,9 @@ pub(super) fn chairs(count: u32) -> Scene {
     scene.put(ground());
     let mut noise = Noise::new(41);
     for i in 0..count {
-        let (layer, cell) = (i / 4, i % 4);
-        let x = 1.2 * centred(cell % 2, 2) + noise.about_zero(0.1);
-        let z = 1.2 * centred(cell / 2, 2) + noise.about_zero(0.1);
+        let (layer, cell) = (i / 9, i % 9);
+        let x = 1.2 * centred(cell % 3, 3) + noise.about_zero(0.1);
+        let z = 1.2 * centred(cell / 3, 3) + noise.about_zero(0.1);
         let place = Vec3::new(x, 1.0 + 1.2 * layer as f32, z);
         scene.put(mesh("chair").of_density(600.0).at(place).turned(noise.rotation()));
     }
@@ -225,7 +225,8 @@ pub(super) fn hills(count: u32) -> Scene {
         let x = 1.6 * centred(i % side, side) + noise.about_zero(0.1);
         let z = 1.6 * centred(i / side, side) + noise.about_zero(0.1);
         let place = Vec3::new(x, noise.between(4.0, 6.0), z);
-        scene.put(toy(i).at(place).turned(noise.rotation()));
+        // Each row begins with another kind.
+        scene.put(toy(i + i / side).at(place).turned(noise.rotation()));
     }
     scene
 }
