@@ -12,8 +12,9 @@ use crate::{BodyKind, Environment};
 
 /// Contacts that a batch holds at least, if there are so many: enough to fill the lanes, few enough to share out.
 const CONTACTS_PER_BATCH: usize = 1024;
-/// An approach of this many half thicknesses of the thinner body in one slice might pass through.
-const APPROACH_MAX: f32 = 2.0;
+/// An approach of more than this many half thicknesses of the thinner body in one slice might pass through, or comes too deep: contacts are flat and surfaces
+/// are not. Heaps of 200 falling tori overlap by 0.11 m at most with 2, 0.05 m with 1, and 0.03 m with 0.5.
+const APPROACH_MAX: f32 = 0.5;
 
 /// An island with at least one contact.
 #[derive(Clone, Copy, Debug)]
@@ -273,8 +274,12 @@ pub(crate) fn half_thickness(a: &Member, b: &Member) -> f32 {
 fn approach(contact: &Contact, members: &[Member], environment: &Environment) -> f32 {
     let (a, b) = (&members[contact.first as usize].state, &members[contact.second as usize].state);
     // Without gravity: what lies still is not to be cut, however thin it is.
+    // What goes along a surface that is bent goes into it, or into what comes after it. Meshes may be bent as much as they are thick; nobody has looked.
+    let bent = is_mesh(&members[contact.first as usize].body.shape)
+        && is_mesh(&members[contact.second as usize].body.shape);
     contact.manifold.points().iter().fold(0.0, |most, p| {
-        let speed = (a.velocity_at(p.position) - b.velocity_at(p.position)).dot(p.normal);
+        let relative = a.velocity_at(p.position) - b.velocity_at(p.position);
+        let speed = if bent { relative.length() } else { relative.dot(p.normal) };
         f32::max(most, speed * environment.settings.frame_seconds)
     })
 }

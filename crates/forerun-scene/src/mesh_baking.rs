@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use forerun_geometry::mesh_file::TriangleList;
-use forerun_geometry::shape::{Enclosure, Inside, Mesh, MeshDraft, MeshError, MeshOptions};
+use forerun_geometry::shape::{Enclosure, Mesh, MeshDraft, MeshError, MeshOptions};
 
 use crate::MeshCache;
 
@@ -77,8 +77,8 @@ pub(crate) struct BakeSite<'a> {
 
 impl BakeSite<'_> {
     /// Makes the mesh; tells if that took more than small repairs.
-    pub(crate) fn make(&self, list: TriangleList, inside: Inside) -> Result<Mesh, MeshError> {
-        let mesh = self.baking.make(self.name, list, MeshOptions { inside, ..MeshOptions::default() })?.mesh;
+    pub(crate) fn make(&self, list: TriangleList, options: MeshOptions) -> Result<Mesh, MeshError> {
+        let mesh = self.baking.make(self.name, list, options)?.mesh;
         if mesh.enclosure == Enclosure::Mended {
             self.warn(&format!("was mended: {}", mesh.repairs));
         }

@@ -25,13 +25,6 @@ pub(crate) fn between(value: f32, (low, high): (f32, f32), field: &str) -> Resul
     check((low..=high).contains(&value), value, &format!("from {low} to {high}"), field)
 }
 
-pub(crate) fn whole_between(value: u32, (low, high): (u32, u32), field: &str) -> Result<(), Fault> {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(out_of_range(value, &format!("from {low} to {high}"))).in_field(field)
-}
-
 /// Three finite numbers.
 pub(crate) fn vector(value: [f32; 3], field: &str) -> Result<(), Fault> {
     each(value, field, |x| x.is_finite(), "a finite number")
@@ -93,7 +86,6 @@ mod tests {
         assert!(between(1.0, (0.0, 1.0), "f").is_ok());
         assert!(zero_or_more(0.0, "f").is_ok());
         assert!(above_zero(0.0, "f").is_err());
-        assert!(whole_between(64, (1, 64), "f").is_ok());
     }
 
     #[test]

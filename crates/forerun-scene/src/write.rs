@@ -96,11 +96,11 @@ impl Writer {
     }
 
     fn mesh(&mut self, mesh: &MeshEntry) {
-        self.optional("file", &mesh.file);
-        self.optional("torus", &mesh.torus);
-        self.optional("torus_knot", &mesh.torus_knot);
-        self.optional("ball", &mesh.ball);
+        let (source, value) = mesh.source.to_toml();
+        self.text.push_str(&format!("{source} = {value}\n"));
         self.field_unless(mesh.scale.to_bits() == 1.0_f32.to_bits(), "scale", &mesh.scale);
+        self.field_unless(mesh.up.is_y(), "up", &mesh.up);
+        self.optional("cell", &mesh.cell);
         self.field_unless(!mesh.open, "open", &mesh.open);
     }
 
@@ -144,7 +144,7 @@ impl Writer {
 }
 
 /// A value as it stands on the right of `=`.
-fn inline<T: Serialize + ?Sized>(value: &T) -> String {
+pub(crate) fn inline<T: Serialize + ?Sized>(value: &T) -> String {
     let mut text = String::new();
     value
         .serialize(toml::ser::ValueSerializer::new(&mut text))

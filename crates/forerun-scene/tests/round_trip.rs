@@ -83,6 +83,28 @@ torus_knot = { p = 2, q = 3, radius = 0.5, winding_radius = 0.2, tube_radius = 0
 [meshes.ball]
 ball = { radius = 1.0, parts = 2 }
 open = true
+[meshes.bowl]
+bowl = { radius = 1.0, foot_radius = 0.5, height = 0.6, thickness = 0.1, segments = 16 }
+cell = 0.05
+[meshes.mug]
+mug = { radius = 0.4, height = 0.9, thickness = 0.05, handle_radius = 0.06, handle_reach = 0.28, segments = 32 }
+[meshes.gear]
+gear = { teeth = 12, module = 0.1, half_width = 0.1, bore = 0.2 }
+[meshes.letter]
+letter = { letter = "R", height = 1.0, depth = 0.25 }
+[meshes.chair]
+chair = { width = 0.5, depth = 0.45, seat_height = 0.46, height = 0.95, bar = 0.04 }
+[meshes.jack]
+jack = { reach = 0.5, arm_radius = 0.1, knob_radius = 0.11, cells = 18 }
+[meshes.link]
+link = { radius = 0.3, straight = 0.2, tube_radius = 0.08, bend_parts = 6, sides = 6 }
+[meshes.bolt]
+bolt = { thread = { radius = 0.2, pitch = 0.1 }, length = 0.5, head_radius = 0.35, head_height = 0.2, head = "hexagonal", segments = 24 }
+[meshes.nut]
+nut = { thread = { radius = 0.2, pitch = 0.1 }, clearance = 0.01, height = 0.3, outer_radius = 0.36, outside = "round", segments = 24 }
+[meshes.terrain]
+terrain = { half_width = 5.0, height = 1.0, hill = 4.0, cells = 10, seed = 7 }
+open = true
 
 [[bodies]]
 name = "ground"
@@ -232,6 +254,19 @@ fn the_scenes_of_the_documentation_are_right() {
         }
     }
     assert!(read >= 2, "a TOML and a JSON scene");
+}
+
+#[test]
+fn the_options_of_a_mesh_file_are_written() {
+    let text =
+        "name = \"z up\"\n[meshes.part]\nfile = \"part.stl\"\nscale = 0.001\nup = \"z\"\ncell = 0.002\n";
+    let scene = Scene::parse(text, Format::Toml, "z_up.toml").unwrap();
+    let written = scene.to_toml();
+    for line in text.lines() {
+        assert!(written.lines().any(|other| other == line), "{line} is not in\n{written}");
+    }
+    let json = Scene::parse(&scene.to_json(), Format::Json, "z_up.json").unwrap();
+    assert_eq!(json.meshes, scene.meshes);
 }
 
 #[test]

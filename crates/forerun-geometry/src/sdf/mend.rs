@@ -9,6 +9,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::crossing::has_crossings;
 use super::kept::Found;
 use super::pseudo_normals::corners;
 use super::winding::Winding;
@@ -28,7 +29,7 @@ pub(crate) enum Verdict {
     /// What they are the surface of, all of them.
     Sound,
     /// What they are the surface of by and large.
-    Mended(Mended),
+    Mended(Box<Mended>),
     /// Nothing that one could tell.
     Hopeless,
 }
@@ -53,7 +54,7 @@ const BESIDE: f64 = 0.02;
 /// The same as part of the radius of the circle in the piece of wall: not to look past a corner.
 const BESIDE_PIECE: f64 = 0.1;
 /// Pieces that walls may be cut into, about.
-const PIECES_MAX: f64 = 262_144.0;
+const PIECES_MAX: f64 = 65_536.0;
 
 /// Areas of a triangle by what is on its sides. Square metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -74,8 +75,17 @@ impl Areas {
     }
 }
 
-/// Tells what a mesh is the surface of. `cell`: size of the cells that its field will have, about. Metres.
-pub(crate) fn survey(mesh: &Mesh, covers: &Covers, cell: f64) -> Verdict {
+/// Tells what a mesh is the surface of. `shells`: a triangle of each part of it. `cell`: size of the cells that its field will have,
+/// about. Metres.
+pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) -> Verdict {
+    if covers.triangles.is_empty() && !has_crossings(mesh) {
+        let winding = Winding::new(mesh);
+        let walls = Walls { covered: mesh, winding: &winding, beside: BESIDE * cell };
+        // Shells that do not cross are wholly inside of others or wholly outside.
+        if shells.len() < 2 || shells.iter().all(|t| walls.sides(corners(mesh, *t)) == (false, true)) {
+            return Verdict::Sound;
+        }
+    }
     let mut vertices = mesh.vertices.clone();
     vertices.extend(&covers.apexes);
     let mut triangles = mesh.triangles.clone();
@@ -84,11 +94,10 @@ pub(crate) fn survey(mesh: &Mesh, covers: &Covers, cell: f64) -> Verdict {
     let winding = Winding::new(&covered);
     let walls = Walls { covered: &covered, winding: &winding, beside: BESIDE * cell };
     // Nothing that is as thick as the mesh passes between points that are half as far apart.
-    let coarse = walls.areas(f64::from(mesh.half_thickness()).max(2.0 * cell));
-    if covers.triangles.is_empty() && coarse.iter().all(|a| !a.mixed() && a.reversed <= 0.0) {
-        return Verdict::Sound;
+    let mut areas = walls.areas(f64::from(mesh.half_thickness()).max(2.0 * cell));
+    if areas.iter().any(Areas::mixed) {
+        areas = walls.areas(walls.piece_size(&areas, 2.0 * cell));
     }
-    let areas = walls.areas(walls.piece_size(&coarse, 2.0 * cell));
     let Some(found) = judge(&areas, mesh.triangles.len()) else { return Verdict::Hopeless };
     let size = walls.piece_size(&areas, cell);
     let surface = walls.surface(&areas, size);
@@ -98,7 +107,7 @@ pub(crate) fn survey(mesh: &Mesh, covers: &Covers, cell: f64) -> Verdict {
     let vertices: Vec<Vec3> = surface.iter().flatten().map(|v| v.as_vec3()).collect();
     let triangles = (0..surface.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     let surface = Mesh::assemble(vertices, triangles);
-    Verdict::Mended(Mended { surface, gap: size, found, covered })
+    Verdict::Mended(Box::new(Mended { surface, gap: size, found, covered }))
 }
 
 /// Whether the areas of triangles, and of covers after the first `triangles`, are those of the surface of something, and what to say about it.

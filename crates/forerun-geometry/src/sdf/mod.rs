@@ -7,10 +7,15 @@
 use crate::Vec3;
 use crate::shape::{Enclosure, Mesh};
 
+mod accuracy;
 pub(crate) mod bake;
+mod bake_blocks;
+mod blocks;
 pub(crate) mod blur;
+mod crossing;
 pub(crate) mod eight;
 mod field;
+mod field_storage;
 pub(crate) mod kept;
 pub(crate) mod mend;
 pub(crate) mod moments;
@@ -21,6 +26,7 @@ pub(crate) mod ridges;
 pub(crate) mod samples;
 pub(crate) mod winding;
 
+pub use accuracy::{FieldError, Spread};
 pub use bake::BakeProgress;
 pub use field::Field;
 pub use kept::{BakeKey, KeptError};

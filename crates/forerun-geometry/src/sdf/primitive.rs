@@ -28,13 +28,28 @@ pub(crate) enum Surface<'a> {
     Sheet(Skin<'a>, f32),
 }
 
-/// The bits of all eight points.
-const ALL: u32 = (1 << LANES) - 1;
+/// What eight points can be looked up in at a time.
+pub(crate) trait LookUp {
+    /// Signed distances (metres) and gradients. Gradients are not quite unit.
+    ///
+    /// Beyond a grid's box this is the distance to a point of the surface, that nearest to the nearest point of the box:
+    /// the true distance or more.
+    fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>);
 
-impl Surface<'_> {
-    /// Signed distance (metres) and gradient at eight points. Gradients are not quite unit.
+    /// [`LookUp::look_up`]; may be none where all distances are `limit` (metres) or more.
     #[inline(always)]
-    pub(crate) fn look_up<F: Lanes>(&self, p: V8<F>) -> (F, V8<F>) {
+    fn look_up_near<F: Lanes>(&self, points: V8<F>, limit: f32) -> Option<(F, V8<F>)> {
+        let (distances, gradients) = self.look_up(points);
+        if distances.lt(F::splat(limit)).any() { Some((distances, gradients)) } else { None }
+    }
+
+    /// Lower bounds of the signed distances, for culling; exact (but for a grid) inside a grid's box.
+    fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F;
+}
+
+impl LookUp for Surface<'_> {
+    #[inline(always)]
+    fn look_up<F: Lanes>(&self, p: V8<F>) -> (F, V8<F>) {
         match self {
             Surface::HalfSpace => (p.y, splat(Vec3::Y)),
             Surface::Sphere(radius) => round(p, *radius),
@@ -54,7 +69,21 @@ impl Surface<'_> {
         }
     }
 
-    /// [`Surface::look_up`] where only some of eight points are asked for; the answers for the others say nothing.
+    #[inline(always)]
+    fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
+        match self {
+            Surface::Field(field) => field.lower_bound(p),
+            Surface::Sheet(skin, depth_limit) => F::from_array(sheet_bound(&p.form(), skin, *depth_limit)),
+            _ => self.look_up(p).0,
+        }
+    }
+}
+
+/// The bits of all eight points.
+const ALL: u32 = (1 << LANES) - 1;
+
+impl Surface<'_> {
+    /// [`LookUp::look_up`] where only some of eight points are asked for; the answers for the others say nothing.
     #[inline(always)]
     pub(crate) fn look_up_some<F: Lanes>(&self, p: V8<F>, asked: u32) -> (F, V8<F>) {
         if let Surface::Sheet(skin, depth_limit) = self {
@@ -62,16 +91,6 @@ impl Surface<'_> {
             (F::from_array(distance), gradient.form())
         } else {
             self.look_up(p)
-        }
-    }
-
-    /// Lower bounds of the signed distance at eight points, for culling.
-    #[inline(always)]
-    pub(crate) fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
-        match self {
-            Surface::Field(field) => field.lower_bound(p),
-            Surface::Sheet(skin, depth_limit) => F::from_array(sheet_bound(&p.form(), skin, *depth_limit)),
-            _ => self.look_up(p).0,
         }
     }
 

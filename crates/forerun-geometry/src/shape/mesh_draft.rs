@@ -53,6 +53,8 @@ pub struct MeshDraft {
     edges: Option<MeshError>,
     /// What covers holes.
     covers: Covers,
+    /// The first triangle of each part that hangs together.
+    shells: Vec<usize>,
 }
 
 impl MeshDraft {
@@ -71,8 +73,16 @@ impl MeshDraft {
             return Err(MeshError::Cell { cell });
         }
         let (vertices, triangles, repairs) = clean(vertices, triangles)?;
-        let (fault, edges, covers) = (None, None, Covers::default());
-        let mut draft = MeshDraft { vertices, triangles, repairs, options, fault, edges, covers };
+        let mut draft = MeshDraft {
+            vertices,
+            triangles,
+            repairs,
+            options,
+            fault: None,
+            edges: None,
+            covers: Covers::default(),
+            shells: Vec::new(),
+        };
         if let Err(fault) = draft.face_outwards() {
             if options.inside == Inside::Needed {
                 return Err(fault);
@@ -104,6 +114,10 @@ impl MeshDraft {
         }
         self.repairs.flipped_triangles += turn_shells(&self.vertices, &mut self.triangles, &parts);
         self.cover();
+        let mut shells: Vec<(u32, usize)> = parts.into_iter().zip(0..).collect();
+        shells.sort_unstable();
+        shells.dedup_by_key(|(part, _)| *part);
+        self.shells = shells.into_iter().map(|(_, triangle)| triangle).collect();
         self.edges = edges.err();
         Ok(())
     }
@@ -149,17 +163,18 @@ impl MeshDraft {
         progress: BakeProgress<'_>,
     ) -> Result<Option<Field>, MeshError> {
         mesh.half_thickness = mesh.measure_half_thickness();
-        let grid = Grid::around(mesh, self.options.cell);
-        match survey(mesh, &self.covers, grid.cell().into()) {
+        let wished = self.options.cell;
+        let cell = Grid::around(mesh, wished).cell();
+        match survey(mesh, &self.shells, &self.covers, cell.into()) {
             Verdict::Sound => {
                 mesh.enclosure = Enclosure::Closed;
                 let surface = Bounding::Exactly(Skin { mesh, normals });
-                Ok(Some(bake(grid, &surface, progress)))
+                Ok(Some(bake(mesh, wished, &surface, progress)))
             }
             Verdict::Mended(mended) => {
                 mesh.enclosure = Enclosure::Mended;
                 mended.found.note_in(&mut mesh.repairs);
-                Ok(Some(bake(grid, &Bounding::mended(&mended), progress)))
+                Ok(Some(bake(mesh, wished, &Bounding::mended(&mended), progress)))
             }
             Verdict::Hopeless if self.options.inside == Inside::Needed => {
                 let (volume, _) = self.volume_and_area();

@@ -6,10 +6,10 @@ use robust::{Coord3D, orient3d};
 use super::Mesh;
 use crate::Aabb;
 
-/// How many lines the thickness is measured along, at most.
+/// How many lines thickness and gaps are measured along, at most.
 const PROBES: usize = 1024;
-/// The thinnest part of the surface that does not count, as sharp edges are thin without end.
-const THIN_EDGES: f64 = 0.05;
+/// The part of the surface where it is thinnest, or nearest to another part, that does not count: sharp edges are thin without end.
+const NARROW_PARTS: f64 = 0.05;
 
 /// The nearest triangle met on one of its sides.
 #[derive(Clone, Copy, Debug)]
@@ -74,29 +74,40 @@ impl Mesh {
     /// Half the thickness below which only a twentieth of the surface lies, measured from the middles of triangles straight
     /// through to the other side.
     pub(super) fn measure_half_thickness(&self) -> f32 {
+        let thickness =
+            self.narrow(|middle, outward| self.first_hits(middle, -outward, |first| first.back.t).back.t);
+        ((0.5 * thickness) as f32).min(self.bounds().half_extents().min_element())
+    }
+
+    /// Half the width of the narrowest gaps between parts of the surface that face each other: grooves of a thread, slits, holes. Measured from
+    /// the middles of triangles straight out, but for the narrowest twentieth of the surface; infinite where less of it faces anything. Metres.
+    pub(crate) fn measure_half_gap(&self) -> f32 {
+        let gap =
+            self.narrow(|middle, outward| self.first_hits(middle, outward, |first| first.front.t).front.t);
+        (0.5 * gap) as f32
+    }
+
+    /// The length below which only a twentieth of the surface lies. `length` tells it at the middle of a triangle with its outward unit normal.
+    fn narrow(&self, length: impl Fn(DVec3, DVec3) -> f64) -> f64 {
         let stride = self.triangles.len().div_ceil(PROBES);
         let mut probes: Vec<(f64, f64)> = Vec::new();
         for triangle in (0..self.triangles.len()).step_by(stride) {
             let outward = self.face_vector(triangle as u32);
             let [a, b, c] = self.corners(triangle).map(|v| v.as_dvec3());
-            let Some(inward) = (-outward).try_normalize() else {
-                continue;
-            };
-            let through = self.first_hits((a + b + c) / 3.0, inward, |first| first.back.t);
-            if through.back.t.is_finite() {
-                probes.push((through.back.t, outward.length()));
+            if let Some(unit) = outward.try_normalize() {
+                probes.push((length((a + b + c) / 3.0, unit), outward.length()));
             }
         }
         probes.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let area: f64 = probes.iter().map(|p| p.1).sum();
-        let mut thinner = 0.0;
-        for (thickness, part) in probes {
-            thinner += part;
-            if thinner >= THIN_EDGES * area {
-                return ((0.5 * thickness) as f32).min(self.bounds().half_extents().min_element());
+        let mut narrower = 0.0;
+        for (length, part) in probes {
+            narrower += part;
+            if narrower >= NARROW_PARTS * area {
+                return length;
             }
         }
-        self.bounds().half_extents().min_element()
+        f64::INFINITY
     }
 }
 
@@ -179,5 +190,32 @@ mod tests {
         about(mesh_make::cuboid(Vec3::new(0.1, 2.0, 0.1)).unwrap().half_thickness(), 0.1);
         about(mesh_make::frame(Vec3::new(0.5, 0.06, 0.5), 0.08).unwrap().half_thickness(), 0.04);
         about(mesh_make::ring(1.0, 0.9, 0.5, 64).unwrap().half_thickness(), 0.05);
+    }
+
+    #[test]
+    fn gaps_of_known_solids() {
+        let about =
+            |found: f32, wanted: f32| assert!((found / wanted - 1.0).abs() < 0.03, "{found}, not {wanted}");
+        // Across the hole; a round one is wider where it is measured from the middle of a facet.
+        about(mesh_make::frame(Vec3::new(0.5, 0.06, 0.5), 0.4).unwrap().measure_half_gap(), 0.1);
+        about(mesh_make::ring(1.0, 0.2, 0.5, 128).unwrap().measure_half_gap(), 0.2);
+        assert_eq!(mesh_make::cuboid(Vec3::ONE).unwrap().measure_half_gap(), f32::INFINITY);
+        // The groove of a thread: at most the pitch less its crest, at least the root.
+        let thread = mesh_make::Thread { radius: 0.24, pitch: 0.08 };
+        let (head, outside) = (mesh_make::Grip::Round, mesh_make::Grip::Round);
+        let bolt =
+            mesh_make::Bolt { thread, length: 0.8, head_radius: 0.3, head_height: 0.1, head, segments: 24 };
+        let nut = mesh_make::Nut {
+            thread,
+            clearance: 0.001,
+            height: 0.3,
+            outer_radius: 0.4,
+            outside,
+            segments: 24,
+        };
+        for list in [bolt.triangles().unwrap(), nut.triangles().unwrap()] {
+            let gap = 2.0 * list.mesh().unwrap().measure_half_gap();
+            assert!((0.02..0.07).contains(&gap), "{gap}");
+        }
     }
 }

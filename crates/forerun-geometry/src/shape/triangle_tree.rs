@@ -92,15 +92,10 @@ impl TriangleTree {
         }
     }
 
-    /// Adds up what `leaf` gives for the triangles of each leaf, where `enter` lets one get to it through all nodes above, in the order
-    /// of the tree.
-    pub(crate) fn descend(
-        &self,
-        mut enter: impl FnMut(usize) -> bool,
-        mut leaf: impl FnMut(&[u32]) -> f64,
-    ) -> f64 {
+    /// Calls `leaf` with the triangles of each leaf that `enter` lets one get to through all nodes above, in the order of the tree.
+    pub(crate) fn descend(&self, mut enter: impl FnMut(usize) -> bool, mut leaf: impl FnMut(&[u32])) {
         let mut stack = [0; DEEPEST];
-        let (mut height, mut sum) = (1, 0.0);
+        let mut height = 1;
         while height > 0 {
             height -= 1;
             let index = stack[height];
@@ -108,14 +103,13 @@ impl TriangleTree {
                 continue;
             }
             match self.node(index) {
-                TreeNode::Leaf(triangles) => sum += leaf(triangles),
+                TreeNode::Leaf(triangles) => leaf(triangles),
                 TreeNode::Inner([first, second]) => {
                     (stack[height], stack[height + 1]) = (second, first);
                     height += 2;
                 }
             }
         }
-        sum
     }
 
     /// Calls `visit` with every triangle whose leaf overlaps the box, in the order of the tree.

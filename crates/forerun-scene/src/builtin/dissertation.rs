@@ -107,7 +107,7 @@ pub(super) fn meshes(count: u32) -> Scene {
         "Rings and knotted tubes of about 5000 triangles each fall into a pit, as they are.",
     );
     let knot = |p, q, segments| {
-        MeshEntry::torus_knot(TorusKnotEntry {
+        MeshEntry::from(TorusKnotEntry {
             p,
             q,
             radius: 0.5,
@@ -118,7 +118,7 @@ pub(super) fn meshes(count: u32) -> Scene {
         })
     };
     let ring = TorusEntry { radius: 0.6, tube_radius: 0.15, segments: 96, sides: 24 };
-    scene.meshes.insert("ring".to_owned(), MeshEntry::torus(ring));
+    scene.meshes.insert("ring".to_owned(), MeshEntry::from(ring));
     scene.meshes.insert("trefoil".to_owned(), knot(2, 3, 192));
     scene.meshes.insert("loop".to_owned(), knot(1, 2, 192));
     scene.put(ground());

@@ -156,7 +156,7 @@ pub(super) fn chain(links: u32) -> Scene {
         "A chain of interlocked rings of 384 triangles each hangs from a fixed one and swings into a heap of boxes.",
     );
     let torus = TorusEntry { radius: RADIUS, tube_radius: TUBE_RADIUS, segments: 24, sides: 8 };
-    scene.meshes.insert("link".to_owned(), MeshEntry::torus(torus));
+    scene.meshes.insert("link".to_owned(), MeshEntry::from(torus));
     scene.put(ground());
     // From one link to the next where the tubes touch, less a little play.
     let pitch = 2.0 * (RADIUS - TUBE_RADIUS) - 0.01;

@@ -12,6 +12,7 @@ mod piles;
 mod sliding;
 mod structures;
 mod towers;
+mod toys;
 
 use crate::error::{Fault, SceneError};
 use crate::scene::Scene;
@@ -85,6 +86,12 @@ static BUILT_INS: &[BuiltIn] = &[
     sized("break", (4, 50, "rows of balls"), "A break on a billiard table", groups::billiard_break),
     single("meeting", "Two groups that meet after 5 s, and a third that never does", groups::meeting),
     sized("chain", (8, 100, "links"), "A chain of rings swings into a heap", groups::chain),
+    sized("mugs", (40, 1000, "mugs"), "Mugs on hooks, and as many that fall on them", toys::mugs),
+    sized("bowl", (60, 1000, "things"), "Gears, jacks, knots, letters and more fall into a bowl", toys::bowl),
+    sized("chairs", (50, 1000, "chairs"), "Chairs fall on a heap", toys::chairs),
+    sized("letters", (42, 1000, "letters"), "Letters fall and lie", toys::letters),
+    sized("gears", (8, 100, "gears"), "Gears in mesh round pegs; the first is turned", toys::gears),
+    sized("hills", (60, 10_000, "things"), "All sorts of things fall on hills, an open mesh", toys::hills),
     sized("pile", (1000, 100_000, "boxes"), "Boxes in a pit, one heap that comes to rest", groups::pile),
     sized("hail", (500, 10_000, "balls"), "Elastic balls at 50 m/s between thin walls", groups::hail),
     sized("cradle", (5, 1000, "balls"), "A row of elastic balls between two walls", structures::cradle),

@@ -86,7 +86,7 @@ pub(super) fn a04d(tilt: u32) -> Scene {
 /// A ball of 2420 triangles rolls.
 pub(super) fn a04e(tilt: u32) -> Scene {
     let mut scene = rolling("a04e", tilt, (mesh("ball").of_mass(1.0), 1.0));
-    scene.meshes.insert("ball".to_owned(), MeshEntry::ball(BallEntry { radius: 1.0, parts: 11 }));
+    scene.meshes.insert("ball".to_owned(), MeshEntry::from(BallEntry { radius: 1.0, parts: 11 }));
     scene
 }
 

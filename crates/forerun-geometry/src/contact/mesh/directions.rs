@@ -1,11 +1,13 @@
 //! Directions: whose points are looked up in whose field.
 
+use forerun_lanes::{Lanes, V8};
 use glam::Mat3;
 
 use super::{MOTION_AHEAD, NEAR};
-use crate::contact::Placed;
+use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
 use crate::sdf::blur::Blur;
+use crate::sdf::eight::splat;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
 use crate::sdf::ridges::Ridges;
@@ -53,14 +55,16 @@ pub(super) struct Direction<'a> {
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
     pub(super) origin: Vec3,
-    /// Where the field is in the world.
-    pub(super) field_pose: Pose,
+    /// Origin of the field's frame in the world. Metres.
+    pub(super) field_position: Vec3,
     /// Rotation of the field in the world.
     pub(super) field_axes: Mat3,
-    /// A point x of the field's frame is about to move by `drift + spin × x`, with some to spare. Metres.
-    pub(super) drift: Vec3,
-    /// See `drift`. Radians.
-    pub(super) spin: Vec3,
+    /// How the points are about to move.
+    pub(super) goes: Going,
+    /// How the field is.
+    pub(super) comes: Going,
+    /// What moves by x against the other comes nearer to it than the tangents say by up to this times x²: surfaces are bent. 1/m
+    pub(super) bend: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
     pub(super) inset: f32,
     /// Points closer than this count, or that will be closer at the end of the step. Metres.
@@ -77,6 +81,38 @@ impl Direction<'_> {
             Way::There => -1.0,
             Way::Back => 1.0,
         }
+    }
+}
+
+/// A motion in the field's frame, with some to spare: a point x is about to move by `drift + spin × x`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Going {
+    /// Metres.
+    drift: Vec3,
+    /// Radians.
+    spin: Vec3,
+    /// Length of `spin`. Radians.
+    turn: f32,
+}
+
+impl Going {
+    /// `at`: the origin of the field's frame. Metres.
+    fn new(motion: &Motion, at: Vec3, into_field: &Mat3) -> Going {
+        let drift = motion.linear + motion.angular.cross(at - motion.about);
+        let spin = *into_field * motion.angular * MOTION_AHEAD;
+        Going { drift: *into_field * drift * MOTION_AHEAD, spin, turn: spin.length() }
+    }
+
+    /// The motion of points of the field's frame. Metres.
+    #[inline(always)]
+    pub(super) fn at<F: Lanes>(&self, points: V8<F>) -> V8<F> {
+        splat::<F>(self.spin).cross(points) + splat(self.drift)
+    }
+
+    /// How far points of balls move at most: no further than the centre, and what turning about it adds. Metres.
+    #[inline(always)]
+    pub(super) fn at_most<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
+        self.at(centres).length() + radii * F::splat(self.turn)
     }
 }
 
@@ -116,17 +152,30 @@ pub(super) fn between<'a>(
             memory.points.fill(shape, &region, gradient);
         }
     }
-    [
-        direction([first, second], Way::There, margin, memory),
-        direction([second, first], Way::Back, margin, memory),
-    ]
+    let axes = [first.pose.axes(), second.pose.axes()];
+    let there = direction([first, second], axes, (Way::There, margin), memory);
+    if let (Some(there), Shape::Mesh(first), Shape::Mesh(second)) = (&there, first.shape, second.shape)
+        && is_beyond(there.origin, first, second, margin)
+    {
+        return [None, None];
+    }
+    [there, direction([second, first], [axes[1], axes[0]], (Way::Back, margin), memory)]
 }
 
-/// Points of `sampled` in the field of `field`; none if `sampled` has no points.
+/// Whether the ball around a mesh that is at `place` in the frame of another is farther than `margin` from the other's box. Metres.
+fn is_beyond(place: Vec3, ball: &Mesh, other: &Mesh, margin: f32) -> bool {
+    let bounds = other.bounds();
+    let reach = ball.collider().radius + margin;
+    let offset = (bounds.min - place).max(place - bounds.max).max(Vec3::ZERO);
+    // A little more, for what rounding may lose.
+    offset.length_squared() > reach * reach * 1.0001
+}
+
+/// Points of `sampled` in the field of `field`, whose axes in the world are given; none if `sampled` has no points.
 fn direction<'a>(
     [sampled, field]: [&Placed<'a>; 2],
-    way: Way,
-    margin: f32,
+    [sampled_axes, field_axes]: [Mat3; 2],
+    (way, margin): (Way, f32),
     memory: &'a Primitives,
 ) -> Option<Direction<'a>> {
     let (points, ridges) = match sampled.shape {
@@ -144,13 +193,8 @@ fn direction<'a>(
         }
         _ => (None, None),
     };
-    let to_field = field.pose.inverse() * sampled.pose;
-    // Relative motion of points of the sampled shape, seen from the field, about the origin of the field's frame.
-    let (s, f) = (&sampled.motion, &field.motion);
-    let spin = s.angular - f.angular;
+    let into_field = field_axes.transpose();
     let at = field.pose.position;
-    let drift = s.linear + s.angular.cross(at - s.about) - f.linear - f.angular.cross(at - f.about);
-    let into_field = |v: Vec3| field.pose.inverse_transform_vector(v) * MOTION_AHEAD;
     Some(Direction {
         way,
         points,
@@ -159,12 +203,13 @@ fn direction<'a>(
         skin,
         blur,
         blur_depth: blur.map_or(0.0, |b| b.depth),
-        axes: to_field.axes(),
-        origin: to_field.position,
-        field_pose: field.pose,
-        field_axes: field.pose.axes(),
-        drift: into_field(drift),
-        spin: into_field(spin),
+        axes: into_field * sampled_axes,
+        origin: into_field * (sampled.pose.position - at),
+        field_position: at,
+        field_axes,
+        goes: Going::new(&sampled.motion, at, &into_field),
+        comes: Going::new(&field.motion, at, &into_field),
+        bend: bend(sampled.shape) + bend(field.shape),
         inset: INSET_PART * sampled.shape.half_thickness().min(field.shape.half_thickness()),
         near: NEAR.min(margin),
         margin,
@@ -190,6 +235,12 @@ fn primitive_surface<'a>(shape: &Shape, planes: &'a [(Vec3, f32)]) -> Option<Sur
         Shape::HalfSpace => Surface::HalfSpace,
         Shape::Compound(_) | Shape::Mesh(_) => return None,
     })
+}
+
+/// See [`Direction::bend`]: half of one over the radius of the bends that matter, taken to be that of the mesh. What primitives there are is convex, and flat
+/// enough: what moves past comes no nearer than their tangents say.
+fn bend(shape: &Shape) -> f32 {
+    if let Shape::Mesh(mesh) = shape { 0.5 / mesh.collider().radius } else { 0.0 }
 }
 
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.

@@ -60,7 +60,7 @@ dispatched! {
 
 #[inline(always)]
 fn near_lanes<F: Lanes>(direction: &Direction, spheres: &Spheres, bits: &mut u32) {
-    *bits = direction.near::<F>(spheres);
+    *bits = direction.near::<F, _>(&direction.surface, spheres);
 }
 
 dispatched! {
@@ -70,7 +70,9 @@ dispatched! {
 
 #[inline(always)]
 fn ask_lanes<F: Lanes>(direction: &Direction, points: &V8<Portable>, asked: u32, told: &mut Told) {
-    let Answer { distance, gradient, .. } = direction.answer::<F>(points.form(), asked);
+    let points = points.form();
+    let answer = direction.surface.look_up_some::<F>(points, asked);
+    let Answer { distance, gradient, .. } = direction.sharpened(points, answer, asked);
     *told = Told { distance: distance.to_array(), gradient: gradient.form() };
 }
 
@@ -86,7 +88,11 @@ fn append_lanes<F: Lanes>(direction: &Direction, points: &Points, blocks: &mut V
         outwards: transformed(points.ridges.normals.form(), &direction.axes, Vec3::ZERO),
         facing_max: F::from_array(points.ridges.facing_max.to_array()),
     };
-    direction.find_eight(&eight, [points.meant, points.beside], points.crossings.as_ref(), blocks);
+    let answer = direction.surface.look_up_some::<F>(eight.points, points.meant);
+    let answer = direction.sharpened(eight.points, answer, points.meant);
+    let mut there = direction.judge(&eight, answer, V8::zero(), points.meant);
+    there.amend(points.beside, points.crossings.as_ref());
+    direction.append(&direction.surface, &eight, there, blocks);
 }
 
 /// What the surface says to eight points.

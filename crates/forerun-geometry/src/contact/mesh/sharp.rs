@@ -37,11 +37,15 @@ struct Exact {
 }
 
 impl Direction<'_> {
-    /// Asks the surface about eight points of the field's frame: the answers are good where they are `asked` for and
-    /// near.
+    /// What the surface says of eight points of the field's frame, better where it is blurred: good where they are
+    /// `asked` for and near.
     #[inline(always)]
-    pub(super) fn answer<F: Lanes>(&self, points: V8<F>, asked: u32) -> Answer<F> {
-        let (distance, gradient) = self.surface.look_up_some(points, asked);
+    pub(super) fn sharpened<F: Lanes>(
+        &self,
+        points: V8<F>,
+        (distance, gradient): (F, V8<F>),
+        asked: u32,
+    ) -> Answer<F> {
         let mut answer = Answer { distance, gradient, beside: 0 };
         if let Some(blur) = self.blur {
             let reach = self.reach(points, F::zero()) + F::splat(self.blur_depth);
@@ -57,12 +61,16 @@ impl Direction<'_> {
         answer
     }
 
-    /// The same for points that lie `back` inside the surface that they are of: next to an edge or corner the side is
-    /// meant that faces them best.
+    /// The same for points inside the surface that they are of: next to an edge or corner the side is meant that faces
+    /// them best.
     #[inline(always)]
-    pub(super) fn answer_inside<F: Lanes>(&self, eight: &Eight<F>, back: V8<F>, asked: u32) -> Answer<F> {
-        let points = eight.points - back;
-        let (distance, gradient) = self.surface.look_up_some(points, asked);
+    pub(super) fn sharpened_inside<F: Lanes>(
+        &self,
+        eight: &Eight<F>,
+        points: V8<F>,
+        (distance, gradient): (F, V8<F>),
+        asked: u32,
+    ) -> Answer<F> {
         let answer = Answer { distance, gradient, beside: 0 };
         match self.blur {
             Some(blur) => answer.but_for(&self.facing(blur, [&points.form(), &eight.outwards.form()], asked)),
