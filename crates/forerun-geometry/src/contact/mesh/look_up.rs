@@ -35,7 +35,7 @@ pub(super) struct Eight<F> {
 }
 
 /// What the field says to them.
-pub(super) struct Answers<F> {
+struct Answers<F> {
     distance: F,
     normal: V8<F>,
     /// The bits of the points that are candidates.
@@ -45,16 +45,13 @@ pub(super) struct Answers<F> {
 }
 
 impl<F: Lanes> Answers<F> {
-    /// Doubts some of what was found; puts what is known of crossings in the place of what the surface says.
+    /// Puts what is known of crossings in the place of what the surface says.
     #[inline(always)]
-    pub(super) fn amend(&mut self, doubted: u32, crossings: Option<&Crossings>) {
-        self.doubtful |= doubted & self.found;
-        if let Some(crossings) = crossings {
-            let known = F::Mask::from_bits(crossings.known);
-            self.distance = known.select(F::from_array(crossings.distance), self.distance);
-            self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
-            self.doubtful &= !crossings.known;
-        }
+    fn put(&mut self, crossings: &Crossings) {
+        let known = F::Mask::from_bits(crossings.known);
+        self.distance = known.select(F::from_array(crossings.distance), self.distance);
+        self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
+        self.doubtful &= !crossings.known;
     }
 }
 
