@@ -12,6 +12,7 @@ use crate::{Pose, Shape, Vec3};
 
 use super::points::{self, Region, RoundPoint};
 
+const NEAR_PART: f32 = 0.4;
 /// See [`Direction::inset`]; as part of half the thickness of the shape.
 const INSET_PART: f32 = 0.25;
 
@@ -107,7 +108,7 @@ fn direction<'a>(sampled: &Placed<'a>, field: &Placed<'a>, margin: f32, sign: f3
         spin: into_field(spin),
         sign,
         inset: INSET_PART * sampled.shape.half_thickness(),
-        near: NEAR.min(margin),
+        near: NEAR.min(margin).min(NEAR_PART * sampled.shape.half_thickness().min(field.shape.half_thickness())),
         margin,
     })
 }

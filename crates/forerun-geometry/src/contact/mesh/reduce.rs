@@ -42,11 +42,11 @@ pub(super) fn reduce(candidates: &mut Vec<Candidate>, directions: &[Direction], 
             !belongs
         });
         let direction = &directions[side[0].direction];
-        let mut chosen = choose(&side, DEPTH_PENALTY * direction.near / direction.margin);
+        let mut chosen = choose(&side, DEPTH_PENALTY * direction.near / direction.margin, 0.25 * direction.near);
         for c in &mut chosen {
             smooth(c, &directions[c.direction]);
         }
-        emit(&chosen, out);
+        emit(&chosen, 0.5 * direction.near, out);
     }
 }
 
@@ -64,7 +64,7 @@ fn deepest(candidates: &[Candidate]) -> Option<usize> {
 /// Up to eight candidates of a side, the first among them: again and again the one farthest from those chosen, less a
 /// penalty for being shallow. `far_penalty` is that of the second four: the far side of a fast ring that comes in
 /// tilted is shallow now and deep at the end of the step.
-fn choose(side: &[Candidate], far_penalty: f32) -> Vec<Candidate> {
+fn choose(side: &[Candidate], far_penalty: f32, same: f32) -> Vec<Candidate> {
     let mut chosen = vec![side[0]];
     let mut left: Vec<Left> = side
         .iter()
@@ -77,7 +77,7 @@ fn choose(side: &[Candidate], far_penalty: f32) -> Vec<Candidate> {
     while chosen.len() < POINTS_MAX {
         let newest = chosen[chosen.len() - 1].position;
         let penalty = if chosen.len() < POINTS_MAX / 2 { DEPTH_PENALTY } else { far_penalty };
-        let mut best = (SAME_POINT, None);
+        let mut best = (same, None);
         for (i, c) in left.iter_mut().enumerate() {
             c.distance_squared = c.distance_squared.min(c.position.distance_squared(newest));
             // Squared it saves the root of most: the distance must be above the best score and the penalty.
@@ -119,9 +119,9 @@ fn smooth(c: &mut Candidate, direction: &Direction) {
 }
 
 /// One manifold of up to four points, or two that share the points in turn.
-fn emit(chosen: &[Candidate], out: &mut Vec<Manifold>) {
+fn emit(chosen: &[Candidate], band: f32, out: &mut Vec<Manifold>) {
     let smallest = chosen[0].separation;
-    let weight = |c: &Candidate| (smallest + WEIGHT_BAND - c.separation).max(0.0);
+    let weight = |c: &Candidate| (smallest + band - c.separation).max(0.0);
     let sum: Vec3 = chosen.iter().map(|c| c.normal * weight(c)).sum();
     let normal = sum.try_normalize().unwrap_or(chosen[0].normal);
     let manifolds = chosen.len().div_ceil(4);
