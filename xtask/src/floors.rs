@@ -3,7 +3,8 @@
 use crate::tidy::Complaint;
 
 /// Every crate of ours and its floor.
-const FLOORS: [(&str, u32); 9] = [
+const FLOORS: [(&str, u32); 10] = [
+    ("forerun-lanes", 0),
     ("forerun-geometry", 1),
     ("forerun-dynamics", 2),
     ("forerun-timeline", 3),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use etcetera::base_strategy::{BaseStrategy as _, choose_native_strategy};
 use forerun::scene::MeshCache;
 
 /// Names the folder; empty for none.
@@ -12,7 +13,7 @@ pub(crate) fn of_meshes() -> Option<MeshCache> {
     let folder = match std::env::var_os(VARIABLE) {
         Some(folder) if folder.is_empty() => return None,
         Some(folder) => PathBuf::from(folder),
-        None => directories::ProjectDirs::from("", "", "forerun")?.cache_dir().to_owned(),
+        None => choose_native_strategy().ok()?.cache_dir().join("forerun"),
     };
     Some(MeshCache::in_folder(folder.join("meshes")))
 }

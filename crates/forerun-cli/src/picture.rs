@@ -33,7 +33,9 @@ const PALETTE: [Vec3; 8] = [
 
 /// The colour of the body with a number.
 pub(crate) fn colour_of(number: u32) -> Vec3 {
-    PALETTE[number as usize % PALETTE.len()]
+    // Rows of as many bodies as there are colours are not to have columns of one colour.
+    let number = number as usize;
+    PALETTE[(number + 3 * (number / PALETTE.len())) % PALETTE.len()]
 }
 
 /// The colour of what does not move.

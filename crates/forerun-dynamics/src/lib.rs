@@ -11,7 +11,6 @@ pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
 pub mod detection;
-pub mod lanes;
 pub mod meter;
 pub mod narrow_phase;
 mod plan;
@@ -25,6 +24,9 @@ pub mod step;
 mod stillness;
 pub mod touch;
 pub mod world;
+
+/// Eight numbers at a time: what the kernels are written in, and the choice of the instruction set that they use.
+pub use forerun_lanes as lanes;
 
 pub use body::{Body, BodyId, BodyKind, Material, Spring};
 pub use body_def::{BodyDef, BodyError, Mass};

@@ -6,7 +6,7 @@ mod common;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use common::{pyramid, run, world_of};
+use common::{heap_of_rings, pyramid, run, world_of};
 
 thread_local! {
     static COUNT: Cell<u32> = const { Cell::new(0) };
@@ -45,4 +45,14 @@ fn a_steady_step_allocates_nothing() {
         run(&mut world, 50);
         assert_eq!(COUNT.get() - before, 0, "rest after {rest_seconds} s");
     }
+}
+
+#[test]
+fn a_steady_step_of_meshes_allocates_nothing() {
+    let mut world = world_of(&heap_of_rings(16));
+    world.environment.settings.rest_seconds = 0.0;
+    run(&mut world, 300);
+    let before = COUNT.get();
+    run(&mut world, 50);
+    assert_eq!(COUNT.get() - before, 0);
 }

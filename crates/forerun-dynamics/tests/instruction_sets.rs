@@ -2,18 +2,18 @@
 
 mod common;
 
-use common::{pyramid, rain, run, with_material, world_of};
+use common::{heap_of_rings, pyramid, rain, run, with_material, world_of};
 use forerun_dynamics::BodyState;
 use forerun_dynamics::lanes::{InstructionSet, limit_to};
 
 #[test]
 fn every_instruction_set_gives_the_same_states() {
-    // Balls, boxes and capsules, some of which bounce, in a heap that the load pass cannot carry; and a pyramid, which it can.
+    // Balls, boxes and capsules, some of which bounce, in a heap that the load pass cannot carry; a pyramid, which it can; and meshes.
     let mut defs = rain(80, 5);
     for def in defs.iter_mut().step_by(3) {
         *def = with_material(def.clone(), 0.4, 0.6);
     }
-    for scene in [defs, pyramid(12)] {
+    for scene in [defs, pyramid(12), heap_of_rings(24)] {
         let mut reference = None;
         for set in InstructionSet::ALL {
             if limit_to(set) != set {

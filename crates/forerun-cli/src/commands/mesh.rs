@@ -1,6 +1,5 @@
 //! Mesh: everything about a mesh file: what it has, what was mended, what its field costs and how good it is; pictures of it.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use forerun::geometry::mesh_file::{

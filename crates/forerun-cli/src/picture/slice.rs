@@ -84,9 +84,9 @@ pub(crate) fn draw_slices(mesh: &Mesh, centre: Vec3) -> Result<Canvas, String> {
     }
     let legend = match field {
         Some(field) => format!(
-            "blue: inside, orange: outside; a line every {:.3} mm; black: zero of the field, yellow: the triangles; cells of {:.3} mm",
-            1000.0 * scale.step,
-            1000.0 * field.cell()
+            "blue: inside, orange: outside; a line every {} m; black: zero of the field, yellow: the triangles; cells of {:.4e} m",
+            rounded(scale.step),
+            field.cell()
         ),
         None => "no field: the mesh has no inside; yellow: the triangles".to_owned(),
     };
@@ -118,6 +118,12 @@ fn round_step(wished: f32) -> f32 {
         step *= factor;
     }
     step
+}
+
+/// Without the digits that sums of powers of ten leave behind.
+fn rounded(step: f32) -> f64 {
+    let digits = 10_f64.powi(7);
+    (f64::from(step) * digits).round() / digits
 }
 
 fn draw_panel(mesh: &Mesh, plane: &Plane, scale: &Scale) -> Canvas {

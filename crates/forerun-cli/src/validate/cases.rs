@@ -15,6 +15,7 @@ mod free_rotation;
 mod friction_directions;
 mod kapla;
 mod newton_chain;
+mod nut;
 mod off_centre_impact;
 mod plank;
 mod rattleback;
@@ -55,6 +56,8 @@ pub(crate) const CASES: &[Case] = &[
     short("capstone", capstone::run),
     short("plank", plank::run),
     short("degenerate", degenerate::run),
+    short("nut", nut::run),
+    long("nut_long", nut::run_long),
     long("kapla_long", kapla::run_long),
     short("sampling", sampling::run),
     short("timeline_cutoff", timeline_cutoff::run),

@@ -13,6 +13,7 @@ mod merge;
 #[cfg(test)]
 mod tests;
 
+use forerun_geometry::contact::ContactScratch;
 use forerun_geometry::{Manifold, Placed};
 use rayon::prelude::*;
 
@@ -106,6 +107,7 @@ struct Search {
     other_pairs: Vec<(u32, u32)>,
     /// Pairs of boxes that are fast: they may meet in a corner, or pass each other, and the lanes know only faces and edges.
     fast: Vec<(u32, u32)>,
+    contact: ContactScratch,
     manifolds: Vec<Manifold>,
     others: Vec<Contact>,
 }
@@ -149,7 +151,7 @@ impl Search {
             if spheres_apart(&bodies.members[a], &bodies.members[b], margin) {
                 continue;
             }
-            forerun_geometry::contact::contact_manifolds(&placed(a), &placed(b), margin, &mut self.manifolds);
+            self.contact.contact_manifolds(&placed(a), &placed(b), margin, &mut self.manifolds);
             self.others.extend(self.manifolds.drain(..).map(|manifold| Contact { first, second, manifold }));
         }
         merge::insert(contacts, &self.others);

@@ -81,6 +81,28 @@ pub(crate) fn rain(count: usize, seed: u64) -> Vec<BodyDef> {
     defs
 }
 
+/// Rings in a heap, as meshes of 384 triangles, with a ball, a capsule, a cylinder and a box of other shapes of primitives among them.
+pub(crate) fn heap_of_rings(count: usize) -> Vec<BodyDef> {
+    let mesh = forerun_geometry::shape::mesh_make::torus(0.5, 0.2, 24, 8).expect("sizes are above 0");
+    let ring = Shape::from(mesh);
+    let mut r = Random(7);
+    let mut defs = vec![ground()];
+    for i in 0..count {
+        let at = Vec3::new(0.9 * (i % 2) as f32, 0.6 + 0.7 * (i / 2) as f32, r.between(-0.2, 0.2));
+        let shape = match i % 8 {
+            3 => Shape::sphere(0.3),
+            5 => Shape::capsule(0.3, 0.2),
+            6 => Shape::cylinder(0.3, 0.3),
+            7 => Shape::cuboid(Vec3::new(0.4, 0.1, 0.3)),
+            _ => Ok(ring.clone()),
+        };
+        let mut def = BodyDef::new(shape.expect("sizes are above 0")).at(at);
+        def.pose.rotation = r.rotation();
+        defs.push(def);
+    }
+    defs
+}
+
 pub(crate) fn tilted_gravity(degrees: f32) -> Vec3 {
     let a = degrees.to_radians();
     Vec3::new(libm::sinf(a), -libm::cosf(a), 0.0) * 9.81

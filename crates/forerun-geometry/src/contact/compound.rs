@@ -1,7 +1,7 @@
 //! Compound: every part against every part.
 
 use super::reduce::Reducer;
-use super::{ContactPoint, Manifold, Placed, any_perpendicular, contact_manifolds};
+use super::{ContactPoint, ContactScratch, Manifold, Placed, any_perpendicular};
 use crate::{Shape, Vec3};
 
 /// More manifolds than this between two shapes are merged where their normals agree.
@@ -11,25 +11,37 @@ const MANIFOLDS_KEPT: usize = 4;
 const AGREE: f32 = 0.99;
 
 /// The manifolds of all parts, at least one of the two shapes being a compound.
-pub(super) fn compound_any(first: &Placed, second: &Placed, margin: f32, out: &mut Vec<Manifold>) {
+pub(super) fn compound_any(
+    first: &Placed,
+    second: &Placed,
+    margin: f32,
+    scratch: &mut ContactScratch,
+    out: &mut Vec<Manifold>,
+) {
     let before = out.len();
-    parts_of(first, second, margin, out);
+    parts_of(first, second, margin, scratch, out);
     if out.len() - before > MANIFOLDS_KEPT {
         merge_agreeing(out, before);
     }
 }
 
-fn parts_of(first: &Placed, second: &Placed, margin: f32, out: &mut Vec<Manifold>) {
+fn parts_of(
+    first: &Placed,
+    second: &Placed,
+    margin: f32,
+    scratch: &mut ContactScratch,
+    out: &mut Vec<Manifold>,
+) {
     if let Shape::Compound(compound) = first.shape {
         for (pose, shape) in &compound.parts {
-            parts_of(&Placed { shape, pose: first.pose * *pose, ..*first }, second, margin, out);
+            parts_of(&Placed { shape, pose: first.pose * *pose, ..*first }, second, margin, scratch, out);
         }
     } else if let Shape::Compound(compound) = second.shape {
         for (pose, shape) in &compound.parts {
-            parts_of(first, &Placed { shape, pose: second.pose * *pose, ..*second }, margin, out);
+            parts_of(first, &Placed { shape, pose: second.pose * *pose, ..*second }, margin, scratch, out);
         }
     } else if may_touch(first, second, margin) {
-        contact_manifolds(first, second, margin, out);
+        scratch.contact_manifolds(first, second, margin, out);
     }
 }
 

@@ -8,46 +8,64 @@
 //! Promise: a pure function of its arguments; nothing is remembered from frame to frame.
 
 use super::{Manifold, Placed};
-use crate::Vec3;
+use crate::Shape;
 
+mod candidates;
 mod directions;
 mod look_up;
 mod points;
 mod reduce;
 mod sharp;
+mod smooth;
+
+use candidates::Candidates;
+use directions::Primitives;
+use reduce::Reduction;
 
 /// Points this near to the other surface count however they move; points farther away only if they will be as near as
-/// this at the end of the step. Metres.
+/// this at the end of the step. Metres, for shapes with half a thickness of 5 cm or more.
+///
+/// All lengths that contact is found with are parts of the one that [`near`] gives for a pair: links, threads and teeth of
+/// millimetres get the same contacts as those of decimetres, only smaller.
 const NEAR: f32 = 0.02;
+/// The same for thinner shapes, as part of half the thickness of the thinner of the two: of what is farther away there is another side.
+const NEAR_PART: f32 = 0.4;
+/// Points nearer to each other than this are one, and points this near to the other surface touch it. As part of [`near`].
+const TOUCH_PART: f32 = 0.25;
+/// Points weigh in the mean normal by how far they are above this much more than the smallest separation. As part of [`near`].
+const WEIGHT_PART: f32 = 0.5;
 /// Motion ahead that contact is looked for in, as a multiple of the motion of the step: contacts push bodies too.
 const MOTION_AHEAD: f32 = 1.2;
 
-/// A point of one surface near the other.
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    /// The point in the frame of the field. Metres.
-    point: Vec3,
-    /// Whether the normal is that of trilinear interpolation at the point and may be smoothed.
-    rough: bool,
-    /// Midpoint between the two surfaces, in the world. Metres.
-    position: Vec3,
-    /// Unit normal in the world, from the first shape to the second.
-    normal: Vec3,
-    /// Distance between the surfaces. Metres.
-    separation: f32,
-    /// The direction that found it.
-    direction: usize,
+/// The memory that contact with meshes is found in. What it holds between two searches means nothing.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Memory {
+    primitives: Primitives,
+    candidates: Candidates,
+    reduction: Reduction,
 }
 
 /// Appends the manifolds between two shapes of which at least one is a mesh and none a compound.
 ///
 /// Points are listed whose separation is below `margin` (metres) and that are near the other surface or will be within
 /// the step. Each has a normal of its own; two manifolds with up to eight points may share a side of the contact.
-pub(super) fn mesh_manifolds(first: &Placed, second: &Placed, margin: f32, out: &mut Vec<Manifold>) {
-    let directions = directions::between(first, second, margin);
-    let mut candidates: Vec<Candidate> = Vec::new();
-    for (index, direction) in directions.iter().enumerate() {
-        look_up::find(direction, index, &mut candidates);
+pub(super) fn mesh_manifolds(
+    first: &Placed,
+    second: &Placed,
+    margin: f32,
+    memory: &mut Memory,
+    out: &mut Vec<Manifold>,
+) {
+    let Memory { primitives, candidates, reduction } = memory;
+    let directions = directions::between(first, second, margin, primitives);
+    candidates.clear();
+    for direction in directions.iter().flatten() {
+        look_up::find(direction, candidates);
     }
-    reduce::reduce(&mut candidates, &directions, out);
+    reduce::reduce(candidates, &directions, reduction, out);
+}
+
+/// How near points of the one shape must come to the other to count. Metres.
+fn near(first: &Shape, second: &Shape, margin: f32) -> f32 {
+    NEAR.min(NEAR_PART * first.half_thickness().min(second.half_thickness())).min(margin)
 }

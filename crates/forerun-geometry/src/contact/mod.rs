@@ -80,15 +80,37 @@ pub struct Placed<'a> {
 /// The motions decide about what is still apart: a contact that would stop shapes that in truth pass each other is left
 /// out, and two cuboids are met at a corner or edge that no face brings together only if they are about to hit there.
 pub fn contact_manifolds(first: &Placed, second: &Placed, margin: f32, out: &mut Vec<Manifold>) {
-    match (first.shape, second.shape) {
-        (Shape::Compound(_), _) | (_, Shape::Compound(_)) => {
-            compound::compound_any(first, second, margin, out);
-        }
-        (Shape::Mesh(_), _) | (_, Shape::Mesh(_)) => mesh::mesh_manifolds(first, second, margin, out),
-        _ => {
-            let found = convex_pair((first.shape, &first.pose), (second.shape, &second.pose), margin)
-                .or_else(|| convex::corner_about_to_hit(first, second, margin));
-            out.extend(found.filter(|manifold| !passing::passes_by(first, second, manifold)));
+    ContactScratch::default().contact_manifolds(first, second, margin, out);
+}
+
+/// The memory that contacts are found in, to be used again from pair to pair. What is in it has no meaning: any scratch gives the same bits as a
+/// new one.
+#[derive(Clone, Debug, Default)]
+pub struct ContactScratch {
+    mesh: mesh::Memory,
+}
+
+impl ContactScratch {
+    /// As [`contact_manifolds`]; what a steady sequence of pairs needs is allocated once.
+    pub fn contact_manifolds(
+        &mut self,
+        first: &Placed,
+        second: &Placed,
+        margin: f32,
+        out: &mut Vec<Manifold>,
+    ) {
+        match (first.shape, second.shape) {
+            (Shape::Compound(_), _) | (_, Shape::Compound(_)) => {
+                compound::compound_any(first, second, margin, self, out);
+            }
+            (Shape::Mesh(_), _) | (_, Shape::Mesh(_)) => {
+                mesh::mesh_manifolds(first, second, margin, &mut self.mesh, out);
+            }
+            _ => {
+                let found = convex_pair((first.shape, &first.pose), (second.shape, &second.pose), margin)
+                    .or_else(|| convex::corner_about_to_hit(first, second, margin));
+                out.extend(found.filter(|manifold| !passing::passes_by(first, second, manifold)));
+            }
         }
     }
 }

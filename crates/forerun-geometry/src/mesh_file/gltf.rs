@@ -14,7 +14,7 @@ mod document;
 
 use accessor::Data;
 pub use buffers::ReadBeside;
-use document::{Document, Node, Primitive};
+use document::{Document, Node, Primitive, Versioned};
 
 /// Most vertices and triangles, all copies of a mesh counted.
 const LARGEST_LIST: usize = 1 << 24;
@@ -32,6 +32,12 @@ const COMPRESSED: [&str; 3] =
 pub fn parse_gltf(bytes: &[u8], beside: ReadBeside<'_>) -> Result<TriangleList, ParseError> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { unpack(bytes)? } else { (bytes, None) };
     let document: Document = serde_json::from_slice(json).map_err(|error| {
+        // The lists of glTF 1.0 are tables: its version says more than the first of them.
+        if let Ok(Versioned { asset: Some(asset) }) = serde_json::from_slice(json)
+            && let Err(error) = check_version(&asset.version)
+        {
+            return error;
+        }
         let place = format!("line {} column {}", error.line(), error.column());
         // It may quote all of a buffer.
         let message: String = error.to_string().chars().take(120).flat_map(char::escape_debug).collect();
@@ -82,15 +88,19 @@ fn unpack(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> {
 }
 
 fn check(document: &Document) -> Result<(), ParseError> {
-    let version = document.asset.as_ref().map(|asset| asset.version.as_str());
-    if !version.is_some_and(|version| version.starts_with("2.")) {
-        return Err(ParseError::new("asset.version", "must be 2.0; export the file as glTF 2.0"));
-    }
+    check_version(document.asset.as_ref().map_or("", |asset| asset.version.as_str()))?;
     let compressed = document.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str()));
     compressed.map_or(Ok(()), |name| {
         let message = format!("{name} is not read; export the file without compression of meshes");
         Err(ParseError::new("extensionsRequired", message))
     })
+}
+
+fn check_version(version: &str) -> Result<(), ParseError> {
+    if version.starts_with("2.") {
+        return Ok(());
+    }
+    Err(ParseError::new("asset.version", "must be 2.0; export the file as glTF 2.0"))
 }
 
 /// Triangles in the making.

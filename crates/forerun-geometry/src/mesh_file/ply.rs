@@ -5,11 +5,11 @@ use super::polygon::{cut_polygon, strip};
 use super::{ParseError, TriangleList, shortened};
 use crate::Vec3;
 
-/// The triangles of a PLY file. Polygons are cut into fans, strips into their triangles.
+/// The triangles of a PLY file. Polygons and strips are cut into triangles.
 ///
 /// # Errors
 /// With the line, vertex or face: a header that is none, a file that is cut, a position that is not finite, a vertex that does not exist,
-/// a polygon that no fan can cut, or no face at all.
+/// a polygon that cannot be cut, or no face at all.
 pub fn parse_ply(bytes: &[u8]) -> Result<TriangleList, ParseError> {
     let header = read_header(bytes)?;
     let rest = &bytes[header.length..];

@@ -134,10 +134,8 @@ pub(super) fn read_header(bytes: &[u8]) -> Result<Header, ParseError> {
                 })?;
                 return Ok(Header { encoding, elements, length, lines });
             }
-            (_, [] | ["comment" | "obj_info", ..]) => {}
-            (_, [word, ..]) => {
-                return Err(fail(format!("\"{}\" does not belong into a PLY header", shortened(word))));
-            }
+            // Comments, also those that some programs forget to call so.
+            _ => {}
         }
     }
     let message = "the header has no \"end_header\": the file is cut, or not a PLY file; export it again";

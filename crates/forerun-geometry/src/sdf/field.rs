@@ -2,10 +2,11 @@
 //!
 //! Promise: a look-up is a pure function of the field and the point, with the same bits on every target, and never
 //! panics, whatever the point (not-a-number gives not-a-number).
-#![allow(clippy::needless_range_loop, reason = "counted loops over fixed arrays are what vectorises")]
 
+use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
+
+use super::eight::{lane, normalized, splat};
 use super::kept::Reader;
-use super::lanes::{Lanes, Lanes3, WIDTH};
 use crate::{Aabb, Vec3};
 
 /// Signed distances in 16 bits at the nodes of a dense grid, read by trilinear interpolation.
@@ -28,16 +29,16 @@ pub struct Field {
 /// More nodes than a grid may have: whole numbers below this are exact in the arithmetic of look-ups.
 const NODES_END: usize = 1 << 23;
 /// The bits of a mask that is set in all lanes.
-const ALL: u32 = (1 << WIDTH) - 1;
+const ALL: u32 = (1 << LANES) - 1;
 
 /// Where eight points are in the grid.
-struct Place {
+struct Place<F> {
     /// Index of the lowest node of the cell.
-    base: [u32; WIDTH],
+    base: [u32; LANES],
     /// Position in the cell, 0 to 1.
-    fraction: Lanes3,
+    fraction: V8<F>,
     /// From the point of the grid's box nearest to the point, to the point: zero inside. Metres.
-    offset: Lanes3,
+    offset: V8<F>,
 }
 
 impl Field {
@@ -138,117 +139,111 @@ impl Field {
     /// box: the true distance or more.
     #[must_use]
     pub fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
-        let (distance, gradient) = self.look_up(Lanes3::splat(point));
-        (distance.0[0], gradient.lane(0))
+        let (distance, gradient) = self.look_up::<Portable>(splat(point));
+        (distance.to_array()[0], lane(&gradient, 0))
     }
 
     /// Gradient by central differences over a cell: smooth where the trilinear one jumps from cell to cell.
     #[must_use]
     pub fn smooth_gradient(&self, point: Vec3) -> Vec3 {
-        let step = self.cell * 0.5;
-        let mut taps = Lanes3::splat(point);
-        for (axis, lanes) in [&mut taps.x, &mut taps.y, &mut taps.z].into_iter().enumerate() {
-            lanes.0[2 * axis] += step[axis];
-            lanes.0[2 * axis + 1] -= step[axis];
-        }
-        let (d, _) = self.look_up(taps);
-        Vec3::new(d.0[0] - d.0[1], d.0[2] - d.0[3], d.0[4] - d.0[5]) / self.cell
+        let taps = self.taps(point);
+        let (distances, _) = self.look_up::<Portable>(V8::from_arrays(taps.map(|[a, b, c, d, e, f]| {
+            // A look-up is of eight: the last two are not wanted.
+            [a, b, c, d, e, f, f, f]
+        })));
+        let [a, b, c, d, e, f, ..] = distances.to_array();
+        self.difference([a, b, c, d, e, f])
+    }
+
+    /// Where the distances are asked that central differences at a point are made of, by component: half a cell to either side along x, y and z.
+    #[inline(always)]
+    pub(crate) fn taps(&self, p: Vec3) -> [[f32; 6]; 3] {
+        let h = self.cell * 0.5;
+        [
+            [p.x + h.x, p.x - h.x, p.x, p.x, p.x, p.x],
+            [p.y, p.y, p.y + h.y, p.y - h.y, p.y, p.y],
+            [p.z, p.z, p.z, p.z, p.z + h.z, p.z - h.z],
+        ]
+    }
+
+    /// The gradient, from the distances at [`Field::taps`].
+    #[inline(always)]
+    pub(crate) fn difference(&self, d: [f32; 6]) -> Vec3 {
+        Vec3::new(d[0] - d[1], d[2] - d[3], d[4] - d[5]) / self.cell
     }
 
     /// [`Field::distance_and_gradient`] at eight points.
-    #[inline]
-    pub(crate) fn look_up(&self, points: Lanes3) -> (Lanes, Lanes3) {
+    #[inline(always)]
+    pub(crate) fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>) {
         let place = self.place(points);
-        let [a, b, c, d, e, f, g, h] = self.corners(&place.base);
+        let [[a, b], [c, d], [e, f], [g, h]] = F::gather_pairs(&self.nodes, &place.base, &self.rows());
         let (fx, fy, fz) = (place.fraction.x, place.fraction.y, place.fraction.z);
         let (ab, cd, ef, gh) = (b - a, d - c, f - e, h - g);
         let (y0, y1, y2, y3) = (a + fx * ab, c + fx * cd, e + fx * ef, g + fx * gh);
         let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
-        let distance = (z0 + fz * (z1 - z0)) * self.scale;
+        let distance = (z0 + fz * (z1 - z0)) * F::splat(self.scale);
         let (x0, x1) = (ab + fy * (cd - ab), ef + fy * (gh - ef));
         let (s0, s1) = (y1 - y0, y3 - y2);
-        let slope = Vec3::splat(self.scale) / self.cell;
-        let gradient = Lanes3 {
-            x: (x0 + fz * (x1 - x0)) * slope.x,
-            y: (s0 + fz * (s1 - s0)) * slope.y,
-            z: (z1 - z0) * slope.z,
-        };
+        let slope = splat::<F>(Vec3::splat(self.scale) / self.cell);
+        let gradient = V8 { x: x0 + fz * (x1 - x0), y: s0 + fz * (s1 - s0), z: z1 - z0 }.times(slope);
         // Not "outside where above 0": points that are not numbers are not inside.
-        let inside = place.offset.dot(place.offset).below(Lanes::splat(f32::MIN_POSITIVE));
+        let inside = place.offset.dot(place.offset).lt(F::splat(f32::MIN_POSITIVE));
         if inside.bits() == ALL {
             return (distance, gradient);
         }
         // The surface point y that q, the nearest point of the box, sees: p - y = offset + phi(q) grad phi(q).
-        let away = place.offset.plus(gradient.normalized().scaled(distance.max(Lanes::ZERO)));
-        let length = away.length();
-        (inside.select(distance, length), inside.select3(gradient, away.normalized()))
+        let away = place.offset + normalized(gradient) * distance.max(F::zero());
+        (inside.select(distance, away.length()), inside.select_v(gradient, normalized(away)))
     }
 
     /// Lower bounds of the signed distance at eight points, exact (but for the grid) inside the grid's box.
     ///
     /// Beyond the box, with o the offset from its nearest point q: the surface lies inside the box, which is convex,
     /// so no point of it is nearer than the square root of o² + phi(q)².
-    #[inline]
-    pub(crate) fn lower_bound(&self, points: Lanes3) -> Lanes {
+    #[inline(always)]
+    pub(crate) fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F {
         let place = self.place(points);
-        let [a, b, c, d, e, f, g, h] = self.corners(&place.base);
+        let [[a, b], [c, d], [e, f], [g, h]] = F::gather_pairs(&self.nodes, &place.base, &self.rows());
         let (fx, fy, fz) = (place.fraction.x, place.fraction.y, place.fraction.z);
         let (y0, y1, y2, y3) = (a + fx * (b - a), c + fx * (d - c), e + fx * (f - e), g + fx * (h - g));
         let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
-        let distance = (z0 + fz * (z1 - z0)) * self.scale;
+        let distance = (z0 + fz * (z1 - z0)) * F::splat(self.scale);
         let offset_squared = place.offset.dot(place.offset);
-        let inside = offset_squared.below(Lanes::splat(f32::MIN_POSITIVE));
-        let positive = distance.max(Lanes::ZERO);
+        let inside = offset_squared.lt(F::splat(f32::MIN_POSITIVE));
+        let positive = distance.max(F::zero());
         inside.select(distance, (offset_squared + positive * positive).sqrt())
     }
 
+    /// From the lowest node of a cell to the rows of nodes along its four edges in the direction of x.
     #[inline(always)]
-    fn place(&self, points: Lanes3) -> Place {
+    fn rows(&self) -> [u32; 4] {
+        let (row, layer) = (self.size[0] as u32, (self.size[0] * self.size[1]) as u32);
+        [0, row, layer, layer + row]
+    }
+
+    #[inline(always)]
+    fn place<F: Lanes>(&self, points: V8<F>) -> Place<F> {
         let inverse_cell = self.cell.recip();
         let (x, fx, ox) = self.place_along(0, points.x, inverse_cell.x);
         let (y, fy, oy) = self.place_along(1, points.y, inverse_cell.y);
         let (z, fz, oz) = self.place_along(2, points.z, inverse_cell.z);
-        // Whole numbers below 2^23 are exact, and adding 2^23 puts them into the lowest bits.
-        let base = (z * (self.cells.y + 1.0) + y) * (self.cells.x + 1.0) + x + Lanes::splat(8_388_608.0);
-        let mut bits = [0; WIDTH];
-        for i in 0..WIDTH {
-            bits[i] = base.0[i].to_bits() & 0x007f_ffff;
-        }
-        Place { base: bits, fraction: Lanes3 { x: fx, y: fy, z: fz }, offset: Lanes3 { x: ox, y: oy, z: oz } }
+        let base = (z * F::splat(self.cells.y + 1.0) + y) * F::splat(self.cells.x + 1.0) + x;
+        let (fraction, offset) = (V8 { x: fx, y: fy, z: fz }, V8 { x: ox, y: oy, z: oz });
+        Place { base: base.to_whole(), fraction, offset }
     }
 
     /// Index of the cell along an axis, position in the cell, and offset from the grid's box.
     #[inline(always)]
-    fn place_along(&self, axis: usize, p: Lanes, inverse_cell: f32) -> (Lanes, Lanes, Lanes) {
+    fn place_along<F: Lanes>(&self, axis: usize, p: F, inverse_cell: f32) -> (F, F, F) {
         /// Adding and subtracting 1.5 times 2^23 rounds to the nearest whole number.
         const ROUND: f32 = 12_582_912.0;
         let cells = self.cells[axis];
-        let u = (p - Lanes::splat(self.origin[axis])) * inverse_cell;
-        let inside = u.max(Lanes::ZERO).min(Lanes::splat(cells));
+        let u = (p - F::splat(self.origin[axis])) * F::splat(inverse_cell);
+        let inside = u.max(F::zero()).min(F::splat(cells));
         // A node may end up at fraction 1 of the cell below as well as at fraction 0 of its own: the value is the same.
-        let index = inside.map(|u| (u - 0.5 + ROUND) - ROUND).min(Lanes::splat(cells - 1.0));
-        (index, inside - index, (u - inside) * self.cell[axis])
-    }
-
-    /// Values at the corners of eight cells: x changes fastest, then y, then z.
-    #[inline(always)]
-    fn corners(&self, base: &[u32; WIDTH]) -> [Lanes; 8] {
-        let (row, layer) = (self.size[0], self.size[0] * self.size[1]);
-        let mut values = [[0_i32; WIDTH]; 8];
-        for i in 0..WIDTH {
-            let cell = &self.nodes[base[i] as usize..][..layer + row + 2];
-            let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
-            for k in 0..8 {
-                values[k][i] = i32::from(cell[corners[k]]);
-            }
-        }
-        let mut corners = [Lanes::ZERO; 8];
-        for k in 0..8 {
-            for i in 0..WIDTH {
-                corners[k].0[i] = values[k][i] as f32;
-            }
-        }
-        corners
+        let below = (inside - F::splat(0.5) + F::splat(ROUND)) - F::splat(ROUND);
+        let index = below.min(F::splat(cells - 1.0));
+        (index, inside - index, (u - inside) * F::splat(self.cell[axis]))
     }
 }
 
@@ -258,6 +253,7 @@ const ROUND_PART: f32 = 1.0 / 16.0;
 
 /// The distances less (sum of the 6 neighbours - 6 times the node) / 12; nodes on the faces of the grid and at sharp
 /// edges stay.
+#[allow(clippy::needless_range_loop, reason = "the index is that of the neighbours too")]
 fn without_interpolation_bias(size: [usize; 3], distances: &[f32], cell: f32) -> Vec<f32> {
     let [nx, ny, nz] = size;
     let (row, layer) = (nx, nx * ny);
@@ -325,7 +321,7 @@ mod tests {
         // In the middle of the ball the grid is too coarse to say much.
         for p in points().map(|p| p * 3.0).filter(|p| p.length() > 0.3) {
             let truth = p.length() - RADIUS;
-            let bound = field.lower_bound(Lanes3::splat(p)).0[0];
+            let bound = field.lower_bound::<Portable>(splat(p)).to_array()[0];
             assert!(bound < truth + 0.006, "{bound} at {p}, truth {truth}");
             let (distance, gradient) = field.distance_and_gradient(p);
             assert!(distance > truth - 0.005 - 0.01 * p.length(), "{distance} at {p}, truth {truth}");

@@ -9,15 +9,15 @@ use crate::shape::{Enclosure, Mesh};
 
 pub(crate) mod bake;
 mod crossing;
+pub(crate) mod eight;
 mod field;
 pub(crate) mod kept;
-pub(crate) mod lanes;
 pub(crate) mod mend;
 pub(crate) mod moments;
 pub(crate) mod nearest;
 pub(crate) mod primitive;
 pub(crate) mod pseudo_normals;
-mod samples;
+pub(crate) mod samples;
 pub(crate) mod winding;
 
 pub use bake::BakeProgress;

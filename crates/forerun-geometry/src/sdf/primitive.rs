@@ -3,8 +3,10 @@
 //! Promise: exact for spheres, boxes, capsules, cylinders and half-spaces; for hulls exact near faces and edges, and
 //! never more than the true distance.
 
+use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
+
 use super::Field;
-use super::lanes::{Lanes, Lanes3, WIDTH};
+use super::eight::{lane, of_vectors, splat};
 use super::nearest::{Nearest, Skin};
 use crate::Vec3;
 use crate::shape::{Capsule, Cuboid, Cylinder, Hull};
@@ -19,7 +21,7 @@ pub(crate) enum Surface<'a> {
     Capsule(Capsule),
     Cylinder(Cylinder),
     /// By planes: unit normal and offset.
-    Hull(Vec<(Vec3, f32)>),
+    Hull(&'a [(Vec3, f32)]),
     /// A closed mesh.
     Field(&'a Field),
     /// An open mesh: its front is outside. Points deeper behind it than a limit (metres) are not inside of anything.
@@ -28,36 +30,33 @@ pub(crate) enum Surface<'a> {
 
 impl Surface<'_> {
     /// Signed distance (metres) and gradient at eight points. Gradients are not quite unit.
-    #[inline]
-    pub(crate) fn look_up(&self, p: Lanes3) -> (Lanes, Lanes3) {
+    #[inline(always)]
+    pub(crate) fn look_up<F: Lanes>(&self, p: V8<F>) -> (F, V8<F>) {
         match self {
-            Surface::HalfSpace => (p.y, Lanes3::splat(Vec3::Y)),
+            Surface::HalfSpace => (p.y, splat(Vec3::Y)),
             Surface::Sphere(radius) => round(p, *radius),
             Surface::Cuboid(c) => cuboid(p, c.half_extents),
             Surface::Capsule(c) => {
-                let h = Lanes::splat(c.half_height);
-                let on_axis = p.y.max(Lanes::ZERO - h).min(h);
-                round(Lanes3 { y: p.y - on_axis, ..p }, c.radius)
+                let h = F::splat(c.half_height);
+                let on_axis = p.y.max(-h).min(h);
+                round(V8 { y: p.y - on_axis, ..p }, c.radius)
             }
             Surface::Cylinder(c) => cylinder(p, *c),
             Surface::Hull(planes) => hull(p, planes),
             Surface::Field(field) => field.look_up(p),
-            Surface::Sheet(skin, depth_limit) => sheet(p, skin, *depth_limit),
+            Surface::Sheet(skin, depth_limit) => {
+                let (distance, gradient) = sheet(&p.form(), skin, *depth_limit);
+                (F::from_array(distance), gradient.form())
+            }
         }
     }
 
     /// Lower bounds of the signed distance at eight points, for culling.
-    #[inline]
-    pub(crate) fn lower_bound(&self, p: Lanes3) -> Lanes {
+    #[inline(always)]
+    pub(crate) fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
         match self {
             Surface::Field(field) => field.lower_bound(p),
-            Surface::Sheet(skin, depth_limit) => {
-                let mut bound = Lanes::ZERO;
-                for i in 0..WIDTH {
-                    bound.0[i] = skin.look_up(p.lane(i)).distance.abs() as f32 - depth_limit;
-                }
-                bound
-            }
+            Surface::Sheet(skin, depth_limit) => F::from_array(sheet_bound(&p.form(), skin, *depth_limit)),
             _ => self.look_up(p).0,
         }
     }
@@ -72,107 +71,107 @@ impl Surface<'_> {
             let signed = skin.signed(point, &nearest);
             return (signed.distance as f32, signed.gradient);
         }
-        let (d, g) = self.look_up(Lanes3::splat(p));
-        (d.0[0], g.lane(0))
+        let (d, g) = self.look_up::<Portable>(splat(p));
+        (d.to_array()[0], lane(&g, 0))
     }
 }
 
 /// Distance to a ball about the origin of what is left of the points.
 #[inline(always)]
-fn round(p: Lanes3, radius: f32) -> (Lanes, Lanes3) {
+fn round<F: Lanes>(p: V8<F>, radius: f32) -> (F, V8<F>) {
     let length = p.length();
-    (length - Lanes::splat(radius), p.scaled(length.max(Lanes::splat(1e-9)).map(|l| 1.0 / l)))
+    (length - F::splat(radius), p * (F::one() / length.max(F::splat(1e-9))))
 }
 
 #[inline(always)]
-fn with_sign_of(magnitude: Lanes, sign: Lanes) -> Lanes {
-    sign.below(Lanes::ZERO).select(Lanes::ZERO - magnitude, magnitude)
+fn with_sign_of<F: Lanes>(magnitude: F, sign: F) -> F {
+    sign.lt(F::zero()).select(F::zero() - magnitude, magnitude)
 }
 
 #[inline(always)]
-fn cuboid(p: Lanes3, half: Vec3) -> (Lanes, Lanes3) {
-    let one = Lanes::splat(1.0);
-    let (qx, qy, qz) = (
-        p.x.abs() - Lanes::splat(half.x),
-        p.y.abs() - Lanes::splat(half.y),
-        p.z.abs() - Lanes::splat(half.z),
-    );
-    let beyond = Lanes3 { x: qx.max(Lanes::ZERO), y: qy.max(Lanes::ZERO), z: qz.max(Lanes::ZERO) };
+fn cuboid<F: Lanes>(p: V8<F>, half: Vec3) -> (F, V8<F>) {
+    let (zero, one) = (F::zero(), F::one());
+    let (qx, qy, qz) =
+        (p.x.abs() - F::splat(half.x), p.y.abs() - F::splat(half.y), p.z.abs() - F::splat(half.z));
+    let beyond = V8 { x: qx.max(zero), y: qy.max(zero), z: qz.max(zero) };
     let (outside_distance, outside_gradient) = round(beyond, 0.0);
     // Inside, the nearest face is the way out.
     let inside_distance = qx.max(qy).max(qz);
-    let x_wins = qy.max(qz).below(qx);
-    let y_wins = qz.below(qy);
-    let inside_gradient = Lanes3 {
-        x: x_wins.select(one, Lanes::ZERO),
-        y: x_wins.select(Lanes::ZERO, y_wins.select(one, Lanes::ZERO)),
-        z: x_wins.select(Lanes::ZERO, y_wins.select(Lanes::ZERO, one)),
+    let x_wins = qy.max(qz).lt(qx);
+    let y_wins = qz.lt(qy);
+    let inside_gradient = V8 {
+        x: x_wins.select(one, zero),
+        y: x_wins.select(zero, y_wins.select(one, zero)),
+        z: x_wins.select(zero, y_wins.select(zero, one)),
     };
-    let outside = Lanes::ZERO.below(outside_distance);
-    let g = outside.select3(outside_gradient, inside_gradient);
-    let gradient = Lanes3 { x: with_sign_of(g.x, p.x), y: with_sign_of(g.y, p.y), z: with_sign_of(g.z, p.z) };
+    let outside = zero.lt(outside_distance);
+    let g = outside.select_v(outside_gradient, inside_gradient);
+    let gradient = V8 { x: with_sign_of(g.x, p.x), y: with_sign_of(g.y, p.y), z: with_sign_of(g.z, p.z) };
     (outside.select(outside_distance, inside_distance), gradient)
 }
 
 #[inline(always)]
-fn cylinder(p: Lanes3, c: Cylinder) -> (Lanes, Lanes3) {
+fn cylinder<F: Lanes>(p: V8<F>, c: Cylinder) -> (F, V8<F>) {
+    let (zero, one, tiny) = (F::zero(), F::one(), F::splat(1e-9));
     let radial = (p.x * p.x + p.z * p.z).sqrt();
-    let inverse = radial.max(Lanes::splat(1e-9)).map(|l| 1.0 / l);
-    let (across, along) = (radial - Lanes::splat(c.radius), p.y.abs() - Lanes::splat(c.half_height));
-    let (a, b) = (across.max(Lanes::ZERO), along.max(Lanes::ZERO));
+    let inverse = one / radial.max(tiny);
+    let (across, along) = (radial - F::splat(c.radius), p.y.abs() - F::splat(c.half_height));
+    let (a, b) = (across.max(zero), along.max(zero));
     let outside_distance = (a * a + b * b).sqrt();
-    let inverse_outside = outside_distance.max(Lanes::splat(1e-9)).map(|l| 1.0 / l);
-    let outside = Lanes::ZERO.below(outside_distance);
-    let side_wins = along.below(across);
-    let one = Lanes::splat(1.0);
-    let g_across = outside.select(a * inverse_outside, side_wins.select(one, Lanes::ZERO));
-    let g_along = outside.select(b * inverse_outside, side_wins.select(Lanes::ZERO, one));
+    let inverse_outside = one / outside_distance.max(tiny);
+    let outside = zero.lt(outside_distance);
+    let side_wins = along.lt(across);
+    let g_across = outside.select(a * inverse_outside, side_wins.select(one, zero));
+    let g_along = outside.select(b * inverse_outside, side_wins.select(zero, one));
     let gradient =
-        Lanes3 { x: g_across * p.x * inverse, y: with_sign_of(g_along, p.y), z: g_across * p.z * inverse };
+        V8 { x: g_across * p.x * inverse, y: with_sign_of(g_along, p.y), z: g_across * p.z * inverse };
     (outside.select(outside_distance, across.max(along)), gradient)
 }
 
 #[inline(always)]
-fn hull(p: Lanes3, planes: &[(Vec3, f32)]) -> (Lanes, Lanes3) {
-    let mut distance = Lanes::splat(f32::NEG_INFINITY);
-    let mut gradient = Lanes3::ZERO;
+fn hull<F: Lanes>(p: V8<F>, planes: &[(Vec3, f32)]) -> (F, V8<F>) {
+    let mut distance = F::splat(f32::NEG_INFINITY);
+    let mut gradient = V8::zero();
     for (normal, offset) in planes {
-        let normal = Lanes3::splat(*normal);
-        let d = p.dot(normal) - Lanes::splat(*offset);
-        let wins = distance.below(d);
+        let normal = splat(*normal);
+        let d = p.dot(normal) - F::splat(*offset);
+        let wins = distance.lt(d);
         distance = wins.select(d, distance);
-        gradient = wins.select3(normal, gradient);
+        gradient = wins.select_v(normal, gradient);
     }
     (distance, gradient)
 }
 
-/// The planes of a hull: its faces, and for each edge the plane halfway between its faces, which rounds the corner
-/// that a point beyond the edge would otherwise see too near.
-pub(crate) fn hull_planes(hull: &Hull) -> Vec<(Vec3, f32)> {
-    let faces = hull.faces.iter().map(|f| (f.normal, f.offset));
+/// Fills `planes` with those of a hull: its faces, and for each edge the plane halfway between its faces, which rounds
+/// the corner that a point beyond the edge would otherwise see too near.
+pub(crate) fn hull_planes(hull: &Hull, planes: &mut Vec<(Vec3, f32)>) {
     let edges = hull.edges.iter().filter_map(|e| {
         let sum = hull.faces[e.faces[0] as usize].normal + hull.faces[e.faces[1] as usize].normal;
         let normal = sum.try_normalize()?;
         let offset = e.vertices.map(|v| normal.dot(hull.vertices[v as usize]));
         Some((normal, offset[0].max(offset[1])))
     });
-    faces.chain(edges).collect()
+    planes.clear();
+    planes.extend(hull.faces.iter().map(|f| (f.normal, f.offset)));
+    planes.extend(edges);
 }
 
-fn sheet(p: Lanes3, skin: &Skin<'_>, depth_limit: f32) -> (Lanes, Lanes3) {
-    let mut distance = Lanes::splat(f32::INFINITY);
-    let mut gradient = Lanes3::splat(Vec3::Y);
-    for i in 0..WIDTH {
-        let signed = skin.look_up(p.lane(i));
+fn sheet(p: &V8<Portable>, skin: &Skin<'_>, depth_limit: f32) -> ([f32; LANES], V8<Portable>) {
+    let (mut distance, mut gradient) = ([f32::INFINITY; LANES], [Vec3::Y; LANES]);
+    for i in 0..LANES {
+        let signed = skin.look_up(lane(p, i));
         // Behind a boundary edge is beside the sheet; far behind the sheet is under a bridge.
         let lost = signed.on_boundary || signed.distance < -f64::from(depth_limit);
         if signed.distance < 0.0 && lost {
             continue;
         }
-        distance.0[i] = signed.distance as f32;
-        gradient.set_lane(i, signed.gradient);
+        (distance[i], gradient[i]) = (signed.distance as f32, signed.gradient);
     }
-    (distance, gradient)
+    (distance, of_vectors(&gradient))
+}
+
+fn sheet_bound(p: &V8<Portable>, skin: &Skin<'_>, depth_limit: f32) -> [f32; LANES] {
+    std::array::from_fn(|i| skin.look_up(lane(p, i)).distance.abs() as f32 - depth_limit)
 }
 
 #[cfg(test)]
@@ -186,16 +185,16 @@ mod tests {
     }
 
     /// For every shape: its surface, and whether distances beyond corners are exact.
-    fn surfaces() -> Vec<(Surface<'static>, bool)> {
+    fn surfaces(planes: &mut Vec<(Vec3, f32)>) -> Vec<(Surface<'_>, bool)> {
         let corners: Vec<Vec3> = (0..12).map(|i| numbers(i * 37 + 5).normalize() * 0.6).collect();
-        let hull = Hull::new(&corners).expect("points in general position");
+        hull_planes(&Hull::new(&corners).expect("points in general position"), planes);
         vec![
             (Surface::HalfSpace, true),
             (Surface::Sphere(0.5), true),
             (Surface::Cuboid(Cuboid { half_extents: Vec3::new(0.3, 0.5, 0.2) }), true),
             (Surface::Capsule(Capsule { half_height: 0.3, radius: 0.2 }), true),
             (Surface::Cylinder(Cylinder { half_height: 0.3, radius: 0.4 }), true),
-            (Surface::Hull(hull_planes(&hull)), false),
+            (Surface::Hull(planes), false),
         ]
     }
 
@@ -205,7 +204,7 @@ mod tests {
 
     #[test]
     fn the_gradient_leads_to_the_surface() {
-        for (surface, exact) in surfaces() {
+        for (surface, exact) in surfaces(&mut Vec::new()) {
             for i in 0..2000 {
                 let p = numbers(i) * 1.2;
                 let (distance, gradient) = at(&surface, p);
@@ -224,7 +223,7 @@ mod tests {
 
     #[test]
     fn no_inner_point_is_nearer_than_the_distance() {
-        for (surface, _) in surfaces() {
+        for (surface, _) in surfaces(&mut Vec::new()) {
             let inner: Vec<Vec3> = (0..4000).map(numbers).filter(|p| at(&surface, *p).0 <= 0.0).collect();
             assert!(inner.len() > 50);
             for p in (0..300).map(|i| numbers(i * 3 + 1) * 1.5) {

@@ -2,7 +2,9 @@
 //!
 //! Promise: every vertex is a sample, and points along long edges are no further apart than asked.
 
-use super::lanes::{Lanes, Lanes3, WIDTH};
+use forerun_lanes::{LANES, Lanes, Portable, V8};
+
+use super::eight::{lane, of_vectors};
 use crate::Vec3;
 
 /// A point of a surface.
@@ -38,44 +40,53 @@ impl Sample {
 /// Samples in leaves of 8, the leaves in nodes of 8.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
-    /// The points of leaf k; the last leaf repeats its last point.
-    points: Vec<Lanes3>,
-    /// Their normals.
-    normals: Vec<Lanes3>,
-    /// See [`Sample::facing_max`].
-    facing_max: Vec<Lanes>,
+    /// The last one repeats its last point.
+    leaves: Vec<Leaf>,
     /// Spheres around the leaves: lane l of block k is leaf 8 k + l.
-    leaves: Vec<Spheres>,
-    /// Spheres around the blocks of leaves: lane l of block k is leaf block 8 k + l.
-    nodes: Vec<Spheres>,
+    leaf_spheres: Vec<Spheres>,
+    /// Spheres around the blocks of leaves: lane l of block k is leaf block 8 k + l. None where the samples are in no order.
+    node_spheres: Vec<Spheres>,
     /// Number of points that are meant.
     count: usize,
+}
+
+/// Eight samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leaf {
+    pub(crate) points: V8<Portable>,
+    pub(crate) normals: V8<Portable>,
+    /// See [`Sample::facing_max`].
+    pub(crate) facing_max: Portable,
 }
 
 /// Eight spheres. Those that only fill the block up have a radius of minus infinity: near nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spheres {
-    pub(crate) centre: Lanes3,
-    pub(crate) radius: Lanes,
+    pub(crate) centre: V8<Portable>,
+    pub(crate) radius: Portable,
 }
 
 impl Samples {
     /// Sorts the samples into the hierarchy.
     pub(crate) fn new(mut samples: Vec<Sample>) -> Samples {
         sort_by_place(&mut samples);
-        let leaves: Vec<&[Sample]> = samples.chunks(WIDTH).collect();
-        let nodes: Vec<&[Sample]> = samples.chunks(WIDTH * WIDTH).collect();
-        Samples {
-            points: leaves.iter().map(|leaf| block_of(leaf, |s| s.point)).collect(),
-            normals: leaves.iter().map(|leaf| block_of(leaf, |s| s.normal)).collect(),
-            facing_max: leaves
-                .iter()
-                .map(|leaf| Lanes(std::array::from_fn(|i| leaf[i.min(leaf.len() - 1)].facing_max)))
-                .collect(),
-            leaves: leaves.chunks(WIDTH).map(Spheres::around).collect(),
-            nodes: nodes.chunks(WIDTH).map(Spheres::around).collect(),
-            count: samples.len(),
+        let mut sorted = Samples::default();
+        sorted.fill(&samples);
+        for groups in samples.chunks(LANES * LANES * LANES) {
+            sorted.node_spheres.push(Spheres::around(groups, LANES * LANES));
         }
+        sorted
+    }
+
+    /// Replaces all by the given samples, in the order given and without nodes: quick, and enough for a few in some order of place.
+    pub(crate) fn fill(&mut self, samples: &[Sample]) {
+        let Samples { leaves, leaf_spheres, node_spheres, count } = self;
+        leaves.clear();
+        leaves.extend(samples.chunks(LANES).map(Leaf::of));
+        leaf_spheres.clear();
+        leaf_spheres.extend(samples.chunks(LANES * LANES).map(|groups| Spheres::around(groups, LANES)));
+        node_spheres.clear();
+        *count = samples.len();
     }
 
     /// How many points there are.
@@ -86,76 +97,74 @@ impl Samples {
 
     /// The samples, in the order of the hierarchy.
     pub fn iter(&self) -> impl Iterator<Item = Sample> + '_ {
-        (0..self.count).map(|i| Sample {
-            point: self.points[i / WIDTH].lane(i % WIDTH),
-            normal: self.normals[i / WIDTH].lane(i % WIDTH),
-            facing_max: self.facing_max[i / WIDTH].0[i % WIDTH],
+        (0..self.count).map(|i| {
+            let (leaf, i) = (&self.leaves[i / LANES], i % LANES);
+            Sample {
+                point: lane(&leaf.points, i),
+                normal: lane(&leaf.normals, i),
+                facing_max: leaf.facing_max.to_array()[i],
+            }
         })
     }
 
     /// Memory that the points and spheres take.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        2 * size_of_val(&*self.points)
-            + size_of_val(&*self.facing_max)
-            + size_of_val(&*self.leaves)
-            + size_of_val(&*self.nodes)
+        size_of_val(&*self.leaves) + size_of_val(&*self.leaf_spheres) + size_of_val(&*self.node_spheres)
     }
 
-    /// Calls `visit` with eight points, their normals, how these must face what they touch and the bits of those that are meant, for every leaf
-    /// that `near` lets through: it is asked about eight spheres at a time and answers with the bits of those that are near enough.
-    #[inline]
-    pub(crate) fn visit(
-        &self,
-        near: impl Fn(&Spheres) -> u32,
-        mut visit: impl FnMut([&Lanes3; 2], &Lanes, u32),
-    ) {
-        for (block, nodes) in self.nodes.iter().enumerate() {
-            let mut node_bits = near(nodes);
-            while node_bits != 0 {
-                let node = block * WIDTH + node_bits.trailing_zeros() as usize;
-                node_bits &= node_bits - 1;
-                let mut leaf_bits = near(&self.leaves[node]);
-                while leaf_bits != 0 {
-                    let leaf = node * WIDTH + leaf_bits.trailing_zeros() as usize;
-                    leaf_bits &= leaf_bits - 1;
-                    let meant = (self.count - leaf * WIDTH).min(WIDTH);
-                    let (points, normals) = (&self.points[leaf], &self.normals[leaf]);
-                    visit([points, normals], &self.facing_max[leaf], (1_u32 << meant) - 1);
-                }
-            }
+    /// A leaf, and the bits of those of its samples that are meant.
+    #[inline(always)]
+    pub(crate) fn leaf(&self, leaf: usize) -> (&Leaf, u32) {
+        let meant = (self.count - leaf * LANES).min(LANES);
+        (&self.leaves[leaf], (1_u32 << meant) - 1)
+    }
+
+    /// Spheres around eight leaves each.
+    #[inline(always)]
+    pub(crate) fn leaf_spheres(&self) -> &[Spheres] {
+        &self.leaf_spheres
+    }
+
+    /// Spheres around eight of [`Samples::leaf_spheres`] each; none where the samples are in no order.
+    #[inline(always)]
+    pub(crate) fn node_spheres(&self) -> &[Spheres] {
+        &self.node_spheres
+    }
+}
+
+impl Leaf {
+    /// Up to eight samples.
+    fn of(samples: &[Sample]) -> Leaf {
+        let samples: [Sample; LANES] = std::array::from_fn(|i| samples[i.min(samples.len() - 1)]);
+        Leaf {
+            points: of_vectors(&samples.map(|s| s.point)),
+            normals: of_vectors(&samples.map(|s| s.normal)),
+            facing_max: Portable::from_array(samples.map(|s| s.facing_max)),
         }
     }
 }
 
 impl Spheres {
-    /// The spheres around up to eight groups of samples.
-    fn around(groups: &[&[Sample]]) -> Spheres {
-        let mut spheres = Spheres { centre: Lanes3::ZERO, radius: Lanes::splat(f32::NEG_INFINITY) };
-        for (i, group) in groups.iter().enumerate() {
+    /// The spheres around up to eight groups of so many samples.
+    fn around(samples: &[Sample], group: usize) -> Spheres {
+        let (mut centre, mut radius) = ([Vec3::ZERO; LANES], [f32::NEG_INFINITY; LANES]);
+        for (i, group) in samples.chunks(group).enumerate() {
             let min = group.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
             let max = group.iter().fold(Vec3::NEG_INFINITY, |m, s| m.max(s.point));
-            let centre = (min + max) * 0.5;
-            let radius = group.iter().fold(0.0_f32, |r, s| r.max(s.point.distance(centre)));
-            spheres.centre.set_lane(i, centre);
+            centre[i] = (min + max) * 0.5;
+            let farthest =
+                group.iter().fold(0.0_f32, |r, s| r.max(s.point.distance_squared(centre[i]))).sqrt();
             // A little more, for what the sums below may lose.
-            spheres.radius.0[i] = radius * 1.0001 + 1e-6;
+            radius[i] = farthest * 1.0001 + 1e-6;
         }
-        spheres
+        Spheres { centre: of_vectors(&centre), radius: Portable::from_array(radius) }
     }
-}
-
-fn block_of(leaf: &[Sample], part: impl Fn(&Sample) -> Vec3) -> Lanes3 {
-    let mut block = Lanes3::ZERO;
-    for i in 0..WIDTH {
-        block.set_lane(i, part(&leaf[i.min(leaf.len() - 1)]));
-    }
-    block
 }
 
 /// Sorts samples so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
 fn sort_by_place(samples: &mut [Sample]) {
-    if samples.len() <= WIDTH {
+    if samples.len() <= LANES {
         return;
     }
     let min = samples.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
@@ -166,7 +175,7 @@ fn sort_by_place(samples: &mut [Sample]) {
         let (a, b) = (key(a), key(b));
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
     });
-    let leaf_or_node = if samples.len() > WIDTH * WIDTH { WIDTH * WIDTH } else { WIDTH };
+    let leaf_or_node = if samples.len() > LANES * LANES { LANES * LANES } else { LANES };
     let half = (samples.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
     let (low, high) = samples.split_at_mut(half);
     sort_by_place(low);
@@ -188,24 +197,23 @@ mod tests {
         for count in [1, 7, 8, 9, 64, 65, 500, 1000] {
             let given = scattered(count);
             let samples = Samples::new(given.clone());
+            let bits = |point: Vec3| point.to_array().map(f32::to_bits);
             let mut visited: Vec<[u32; 3]> = Vec::new();
-            let all = |spheres: &Spheres| Lanes::splat(f32::NEG_INFINITY).below(spheres.radius).bits();
-            samples.visit(all, |[points, _], _, meant| {
-                visited.extend(
-                    (0..WIDTH)
-                        .filter(|i| meant >> i & 1 == 1)
-                        .map(|i| points.lane(i).to_array().map(f32::to_bits)),
-                );
-            });
-            let mut expected: Vec<[u32; 3]> =
-                given.iter().map(|s| s.point.to_array().map(f32::to_bits)).collect();
+            for leaf in 0..count.div_ceil(LANES as u32) as usize {
+                let (leaf, meant) = samples.leaf(leaf);
+                let meant = (0..LANES).filter(|i| meant >> i & 1 == 1);
+                visited.extend(meant.map(|i| bits(lane(&leaf.points, i))));
+            }
+            let mut expected: Vec<[u32; 3]> = given.iter().map(|s| bits(s.point)).collect();
             visited.sort_unstable();
             expected.sort_unstable();
             assert_eq!(visited, expected);
+            let of_runs = [(&samples.leaf_spheres, LANES), (&samples.node_spheres, LANES * LANES)];
             for (i, sample) in samples.iter().enumerate() {
-                for (spheres, k) in [(&samples.leaves, i / WIDTH), (&samples.nodes, i / (WIDTH * WIDTH))] {
-                    let (sphere, lane) = (spheres[k / WIDTH], k % WIDTH);
-                    assert!(sample.point.distance(sphere.centre.lane(lane)) <= sphere.radius.0[lane]);
+                for (spheres, run) in of_runs {
+                    let (spheres, at) = (spheres[i / run / LANES], i / run % LANES);
+                    let reach = spheres.radius.to_array()[at];
+                    assert!(sample.point.distance(lane(&spheres.centre, at)) <= reach);
                 }
             }
         }
@@ -214,7 +222,8 @@ mod tests {
     #[test]
     fn neighbours_share_leaves() {
         let samples = Samples::new(scattered(1000));
-        let mean = samples.leaves.iter().flat_map(|l| l.radius.0).filter(|r| *r > 0.0).sum::<f32>() / 125.0;
+        let radii = samples.leaf_spheres.iter().flat_map(|l| l.radius.to_array());
+        let mean = radii.filter(|r| *r > 0.0).sum::<f32>() / 125.0;
         assert!(mean < 0.2, "leaves of 8 in 1000 points of a unit cube have a mean radius of {mean} m");
     }
 }

@@ -203,6 +203,13 @@ fn errors_name_the_place_in_the_document() {
         assert!(message.contains(expected), "\"{expected}\" is not in: {message}");
     };
     says(&|d| d["asset"]["version"] = json!("1.0"), "asset.version: must be 2.0");
+    says(
+        &|d| {
+            d["asset"]["version"] = json!("1.0");
+            d["meshes"] = json!({});
+        },
+        "asset.version: must be 2.0",
+    );
     says(&|d| d["scene"] = json!(4), "scene: scenes[4] does not exist");
     says(&|d| d["nodes"][0]["children"] = json!([0]), "nodes[0]: has two parents");
     says(&|d| d["nodes"][0]["children"] = json!([9]), "nodes[9]: does not exist");

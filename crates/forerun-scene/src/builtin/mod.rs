@@ -6,6 +6,7 @@ mod balls;
 mod dissertation;
 mod flying;
 mod groups;
+mod mechanisms;
 mod noise;
 mod parts;
 mod piles;
@@ -84,7 +85,9 @@ static BUILT_INS: &[BuiltIn] = &[
     sized("walls", (20, 1000, "piles"), "Piles with thin walls between them", groups::walls),
     sized("break", (4, 50, "rows of balls"), "A break on a billiard table", groups::billiard_break),
     single("meeting", "Two groups that meet after 5 s, and a third that never does", groups::meeting),
-    sized("chain", (8, 100, "links"), "A chain of rings swings into a heap", groups::chain),
+    sized("chain", (12, 100, "links"), "A chain of interlocked links hangs", mechanisms::chain),
+    single("nut", "A nut falls down the thread of a bolt", mechanisms::nut),
+    sized("swing", (8, 100, "links"), "A chain of rings swings into a heap", groups::swing),
     sized("pile", (1000, 100_000, "boxes"), "Boxes in a pit, one heap that comes to rest", groups::pile),
     sized("hail", (500, 10_000, "balls"), "Elastic balls at 50 m/s between thin walls", groups::hail),
     sized("cradle", (5, 1000, "balls"), "A row of elastic balls between two walls", structures::cradle),

@@ -1,187 +1,230 @@
 //! Culling and look-ups: from the points of a direction to candidates for contact.
 
-use super::Candidate;
+use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched};
+
+use super::TOUCH_PART;
+use super::candidates::{Block, Candidates};
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
 use crate::Vec3;
-use crate::sdf::lanes::{Lanes, Lanes3, WIDTH};
+use crate::sdf::eight::{normalized, of_vectors, splat, transformed};
 use crate::sdf::primitive::Surface;
+use crate::sdf::samples::Spheres;
 use crate::sdf::{Sample, Samples};
 
 /// Gradients shorter than this (squared) say nothing: they come from the middle of thin parts.
 const GRADIENT_SQUARED_MIN: f32 = 0.01;
 
 /// The corners of boxes face what they stand on with a cosine of -0.58, edges and smooth surfaces better. Points that
-/// face the surface less well are asked again.
+/// face the surface less well are asked again where they touch it.
 const FACING_WELL: f32 = -0.45;
 
 /// Points whose surroundings have the same normal, but for rounding, are inside a plane.
 const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
 
-/// They are if they are inside the surface, or this close to it. Metres.
-const BESIDE: f32 = 0.005;
-
 /// Points with their outward normals, in the field's frame.
-struct Eight {
-    points: Lanes3,
-    outwards: Lanes3,
+struct Eight<F> {
+    points: V8<F>,
+    outwards: V8<F>,
     /// See [`Sample::facing_max`](crate::sdf::Sample::facing_max).
-    facing_max: Lanes,
+    facing_max: F,
 }
 
 /// What the field says to them.
-struct Answers {
-    distance: Lanes,
-    normal: Lanes3,
+struct Answers<F> {
+    distance: F,
+    normal: V8<F>,
     /// The bits of the points that are candidates.
     found: u32,
     /// The bits of those near or inside the surface that do not face it well.
     doubtful: u32,
-    /// Where it was asked; see [`Direction::meet`].
-    inset: f32,
 }
 
 /// Appends the points of the direction that are near the surface, or will be at the end of the step.
-pub(super) fn find(direction: &Direction, index: usize, candidates: &mut Vec<Candidate>) {
-    match &direction.points {
-        Points::Mesh(samples) => direction.find_sharp(samples, index, candidates),
-        Points::Sharp(samples) => direction.find_sharp(samples, index, candidates),
+pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
+    match direction.points {
+        Points::Sharp(samples) => find_sharp(direction, samples, candidates),
         Points::Round(balls) => {
-            for chunk in balls.chunks(WIDTH) {
-                direction.find_round(chunk, index, candidates);
+            for chunk in balls.chunks(LANES) {
+                find_round(direction, chunk, candidates);
             }
         }
     }
 }
 
-impl Direction<'_> {
-    fn find_sharp(&self, samples: &Samples, index: usize, candidates: &mut Vec<Candidate>) {
-        samples.visit(
-            |spheres| self.near(spheres.centre.transformed(&self.axes, self.origin), spheres.radius),
-            |[points, normals], facing_max, meant| {
-                let eight = Eight {
-                    points: points.transformed(&self.axes, self.origin),
-                    outwards: normals.transformed(&self.axes, Vec3::ZERO),
-                    facing_max: *facing_max,
-                };
-                let mut there = self.meet(&eight, 0.0, meant);
-                if there.doubtful != 0 && self.inset > 0.0 {
-                    let mut inside = self.meet(&eight, self.inset, there.doubtful);
-                    // Better than an answer that is good enough is only one without doubt.
-                    inside.found &= !inside.doubtful | !there.found;
-                    there.found &= !inside.found;
-                    self.push(&eight, &inside, index, candidates);
-                }
-                self.push(&eight, &there, index, candidates);
-            },
-        );
-    }
+dispatched! {
+    fn find_sharp(direction: &Direction, samples: &Samples, candidates: &mut Candidates) => find_sharp_lanes
+}
 
+#[inline(always)]
+fn find_sharp_lanes<F: Lanes>(direction: &Direction, samples: &Samples, candidates: &mut Candidates) {
+    let Candidates { blocks, leaves, nodes } = candidates;
+    cull::<F>(direction, samples, nodes, leaves);
+    for &leaf in &*leaves {
+        let (leaf, meant) = samples.leaf(leaf as usize);
+        let eight = Eight::<F> {
+            points: transformed(leaf.points.form(), &direction.axes, direction.origin),
+            outwards: transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO),
+            facing_max: F::from_array(leaf.facing_max.to_array()),
+        };
+        let mut there = direction.meet(&eight, 0.0, meant);
+        if there.doubtful != 0 && direction.inset > 0.0 {
+            let mut inside = direction.meet(&eight, direction.inset, there.doubtful);
+            // Better than an answer that is good enough is only one without doubt.
+            inside.found &= !inside.doubtful | !there.found;
+            there.found &= !inside.found;
+            direction.push(&eight, &inside, 0, blocks);
+        }
+        direction.push(&eight, &there, there.found, blocks);
+    }
+}
+
+/// Fills `leaves` with the leaves that may hold points that count.
+#[inline(always)]
+fn cull<F: Lanes>(direction: &Direction, samples: &Samples, nodes: &mut Vec<u32>, leaves: &mut Vec<u32>) {
+    nodes.clear();
+    if samples.node_spheres().is_empty() {
+        nodes.extend(0..samples.leaf_spheres().len() as u32);
+    }
+    for (block, spheres) in samples.node_spheres().iter().enumerate() {
+        push_bits(block, direction.near::<F>(spheres), nodes);
+    }
+    leaves.clear();
+    for &node in &*nodes {
+        push_bits(node as usize, direction.near::<F>(&samples.leaf_spheres()[node as usize]), leaves);
+    }
+}
+
+/// Appends the numbers of those of a block of eight whose bits are set.
+#[inline(always)]
+fn push_bits(block: usize, mut bits: u32, list: &mut Vec<u32>) {
+    while bits != 0 {
+        list.push((block * LANES) as u32 + bits.trailing_zeros());
+        bits &= bits - 1;
+    }
+}
+
+impl Direction<'_> {
     /// What the field says to some of eight points, asked `inset` metres further inside their own surface.
     ///
     /// There the face that the points have come through is the nearest one even for the corners of a box that stands
     /// exactly on another of the same size. The answer is carried back to the points along the normal found.
     #[inline(always)]
-    fn meet(&self, eight: &Eight, inset: f32, asked: u32) -> Answers {
-        let back = eight.outwards.scaled(Lanes::splat(inset));
-        let (distance, gradient) = self.answer(eight.points.minus(back), asked, inset);
-        let normal = gradient.normalized();
+    fn meet<F: Lanes>(&self, eight: &Eight<F>, inset: f32, asked: u32) -> Answers<F> {
+        let back = eight.outwards * F::splat(inset);
+        let (distance, gradient) = self.answer(eight.points - back, asked, inset);
+        let normal = normalized(gradient);
         let distance = distance + normal.dot(back);
-        let near = asked & distance.below(Lanes::splat(self.margin)).bits();
+        let near = asked & distance.lt(F::splat(self.margin)).bits();
         if near == 0 {
-            return Answers { distance, normal, found: 0, doubtful: 0, inset };
+            return Answers { distance, normal, found: 0, doubtful: 0 };
         }
-        let closing = normal.dot(self.motion_at(eight.points)).min(Lanes::ZERO);
+        let closing = normal.dot(self.motion_at(eight.points)).min(F::zero());
         let facing = normal.dot(eight.outwards);
-        let found = near
-            & facing.below(eight.facing_max).bits()
-            & (distance + closing).below(Lanes::splat(self.near)).bits()
-            & Lanes::splat(GRADIENT_SQUARED_MIN).below(gradient.dot(gradient)).bits();
-        let doubtful = near
-            & distance.below(Lanes::splat(BESIDE)).bits()
-            & !facing.below(Lanes::splat(FACING_WELL)).bits();
-        Answers { distance, normal, found, doubtful, inset }
+        let found = facing.lt(eight.facing_max)
+            & (distance + closing).lt(F::splat(self.near))
+            & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
+        let well = facing.lt(F::splat(FACING_WELL)).bits();
+        let doubtful = near & distance.lt(F::splat(TOUCH_PART * self.near)).bits() & !well;
+        Answers { distance, normal, found: near & found.bits(), doubtful }
     }
 
+    /// Appends what was found; `rough`: the bits of those whose normal is that of the field at the point itself.
     #[inline(always)]
-    fn push(&self, eight: &Eight, answers: &Answers, index: usize, candidates: &mut Vec<Candidate>) {
-        let mut found = answers.found;
-        while found != 0 {
-            let i = found.trailing_zeros() as usize;
-            found &= found - 1;
-            let ball = RoundPoint { centre: eight.points.lane(i), radius: 0.0 };
+    fn push<F: Lanes>(&self, eight: &Eight<F>, answers: &Answers<F>, rough: u32, blocks: &mut Vec<Block>) {
+        if answers.found == 0 {
+            return;
+        }
+        let (mut normal, mut rough) = (answers.normal, rough);
+        if matches!(self.surface, Surface::Field(_)) {
             // What lies on a plane is pushed off it at a right angle, whatever interpolation says of its rim.
-            let flat = matches!(self.surface, Surface::Field(_)) && eight.facing_max.0[i] <= FLAT_MAX;
-            let normal = if flat { -eight.outwards.lane(i) } else { answers.normal.lane(i) };
-            let candidate = self.candidate(ball, normal, answers.distance.0[i], index);
-            candidates
-                .push(Candidate { rough: answers.inset == 0.0 && !flat && self.blur == 0.0, ..candidate });
+            let flat = eight.facing_max.le(F::splat(FLAT_MAX));
+            normal = flat.select_v(-eight.outwards, normal);
+            rough &= if self.blur > 0.0 { 0 } else { !flat.bits() };
         }
+        let found = F::Mask::from_bits(answers.found);
+        let midpoint = eight.points - normal * (F::splat(0.5) * answers.distance);
+        let left = found.select(answers.distance, F::splat(f32::INFINITY));
+        let in_world = transformed(normal, &self.field_axes, Vec3::ZERO) * F::splat(self.sign());
+        blocks.push(Block {
+            point: eight.points.form(),
+            position: transformed(midpoint, &self.field_axes, self.field_pose.position).form(),
+            normal: in_world.form(),
+            separation: Portable::from_array(answers.distance.to_array()),
+            left: Portable::from_array(left.to_array()),
+            rough,
+            way: self.way,
+        });
     }
 
-    /// At most eight balls.
-    fn find_round(&self, balls: &[RoundPoint], index: usize, candidates: &mut Vec<Candidate>) {
-        let (mut centres, mut radii) = (Lanes3::ZERO, Lanes::splat(f32::NEG_INFINITY));
-        for (i, ball) in balls.iter().enumerate() {
-            centres.set_lane(i, self.axes * ball.centre + self.origin);
-            radii.0[i] = ball.radius;
-        }
-        let mut near = self.near(centres, radii);
-        let mut guess = None;
-        while near != 0 {
-            let i = near.trailing_zeros() as usize;
-            near &= near - 1;
-            let ball = RoundPoint { centre: centres.lane(i), radius: radii.0[i] };
-            // The field is exact only near the surface, and the surface of the ball may be far from its centre.
-            let (distance, gradient) = self.surface.exact(ball.centre, self.skin.as_ref(), &mut guess);
-            let motion = self.drift + self.spin.cross(ball.centre);
-            let separation = distance - ball.radius;
-            let closing = gradient.dot(motion).min(0.0);
-            let meant = separation < self.margin && separation + closing < self.near;
-            if meant && gradient.length_squared() > GRADIENT_SQUARED_MIN {
-                candidates.push(self.candidate(ball, gradient.normalize(), distance, index));
-            }
-        }
-    }
-
-    /// The bits of the balls (in the field's frame) that may hold points that count.
+    /// The bits of the spheres that may hold points that count.
     #[inline(always)]
-    fn near(&self, centres: Lanes3, radii: Lanes) -> u32 {
-        let near = self.reach(centres, radii) + Lanes::splat(self.blur);
-        (self.surface.lower_bound(centres) - radii).below(near).bits()
+    fn near<F: Lanes>(&self, spheres: &Spheres) -> u32 {
+        let radii = F::from_array(spheres.radius.to_array());
+        let centres = transformed(spheres.centre.form::<F>(), &self.axes, self.origin);
+        let near = self.reach(centres, radii) + F::splat(self.blur);
+        (self.surface.lower_bound(centres) - radii).lt(near).bits()
     }
 
     /// How near to the surface points of balls must be to count. Metres.
     #[inline(always)]
-    pub(super) fn reach(&self, centres: Lanes3, radii: Lanes) -> Lanes {
+    pub(super) fn reach<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
         // No point of a ball moves further than its centre, and what turning about the centre adds.
-        let motion = self.motion_at(centres).length() + radii * self.spin.length();
-        (motion + Lanes::splat(self.near)).min(Lanes::splat(self.margin))
+        let motion = self.motion_at(centres).length() + radii * F::splat(self.spin.length());
+        (motion + F::splat(self.near)).min(F::splat(self.margin))
     }
 
     #[inline(always)]
-    fn motion_at(&self, points: Lanes3) -> Lanes3 {
-        let (w, p) = (self.spin, points);
-        let spun = Lanes3 { x: p.z * w.y - p.y * w.z, y: p.x * w.z - p.z * w.x, z: p.y * w.x - p.x * w.y };
-        spun.plus(Lanes3::splat(self.drift))
+    fn motion_at<F: Lanes>(&self, points: V8<F>) -> V8<F> {
+        splat::<F>(self.spin).cross(points) + splat(self.drift)
     }
 
-    /// The candidate of a point (of the field's frame), with the distance of its centre and the gradient there.
-    pub(super) fn candidate(
-        &self,
-        point: RoundPoint,
-        normal: Vec3,
-        distance: f32,
-        index: usize,
-    ) -> Candidate {
-        let midpoint = point.centre - normal * (0.5 * (point.radius + distance));
-        Candidate {
-            point: point.centre,
-            rough: false,
-            position: self.field_axes * midpoint + self.field_pose.position,
-            normal: self.field_axes * normal * self.sign,
-            separation: distance - point.radius,
-            direction: index,
+    /// The normal in the world of a point with the given gradient, and the point half of `way` (metres) against the gradient from it.
+    pub(super) fn to_world(&self, point: Vec3, gradient: Vec3, way: f32) -> (Vec3, Vec3) {
+        let midpoint = point - gradient * (0.5 * way);
+        let position = self.field_axes * midpoint + self.field_pose.position;
+        (self.field_axes * gradient * self.sign(), position)
+    }
+}
+
+/// At most eight balls.
+fn find_round(direction: &Direction, balls: &[RoundPoint], candidates: &mut Candidates) {
+    let (mut centres, mut radii) = ([Vec3::ZERO; LANES], [f32::NEG_INFINITY; LANES]);
+    for (i, ball) in balls.iter().enumerate() {
+        (centres[i], radii[i]) = (ball.centre, ball.radius);
+    }
+    let spheres = Spheres { centre: of_vectors(&centres), radius: Portable::from_array(radii) };
+    let mut near = direction.near::<Portable>(&spheres);
+    let (mut points, mut normals, mut positions) = (centres, [Vec3::ZERO; LANES], [Vec3::ZERO; LANES]);
+    let (mut separations, mut found) = ([f32::INFINITY; LANES], false);
+    let mut guess = None;
+    while near != 0 {
+        let i = near.trailing_zeros() as usize;
+        near &= near - 1;
+        let centre = direction.axes * centres[i] + direction.origin;
+        // The field is exact only near the surface, and the surface of the ball may be far from its centre.
+        let (distance, gradient) = direction.surface.exact(centre, direction.skin.as_ref(), &mut guess);
+        let motion = direction.drift + direction.spin.cross(centre);
+        let separation = distance - radii[i];
+        let closing = gradient.dot(motion).min(0.0);
+        let meant = separation < direction.margin && separation + closing < direction.near;
+        if meant && gradient.length_squared() > GRADIENT_SQUARED_MIN {
+            let normal = gradient.normalize();
+            points[i] = centre;
+            (normals[i], positions[i]) = direction.to_world(centre, normal, radii[i] + distance);
+            separations[i] = separation;
+            found = true;
         }
+    }
+    if found {
+        candidates.blocks.push(Block {
+            point: of_vectors(&points),
+            position: of_vectors(&positions),
+            normal: of_vectors(&normals),
+            separation: Portable::from_array(separations),
+            left: Portable::from_array(separations),
+            rough: 0,
+            way: direction.way,
+        });
     }
 }

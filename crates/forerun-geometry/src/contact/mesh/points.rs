@@ -32,31 +32,58 @@ const RIM: [(f32, f32); 8] = {
     [(1.0, 0.0), (D, D), (0.0, 1.0), (-D, D), (-1.0, 0.0), (-D, -D), (0.0, -1.0), (D, -D)]
 };
 
-/// The points of a shape in its own frame; none for half-spaces. `gradient` tells which way is away from the mesh.
-pub(super) fn of<'a>(shape: &Shape, region: &Region, gradient: impl Fn(Vec3) -> Vec3) -> Option<Points<'a>> {
-    let mut points = Vec::new();
-    match shape {
-        Shape::Sphere(s) => {
-            return Some(Points::Round(vec![RoundPoint { centre: Vec3::ZERO, radius: s.radius }]));
-        }
-        Shape::Capsule(c) => return Some(Points::Round(capsule(c))),
-        Shape::Cuboid(c) => cuboid(c, region, &mut points),
-        Shape::Cylinder(c) => cylinder(c, gradient, &mut points),
-        Shape::Hull(hull) => hull_points(hull, region, &mut points),
-        Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => return None,
+/// The points of a primitive in its own frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PointList {
+    /// Of a shape with edges.
+    sharp: Vec<Sample>,
+    /// The same, ready to be looked up.
+    samples: Samples,
+    /// Of a rounded shape.
+    round: Vec<RoundPoint>,
+    /// For each corner of a hull the sum of the normals around.
+    normal_sums: Vec<Vec3>,
+}
+
+impl PointList {
+    pub(super) fn clear(&mut self) {
+        self.sharp.clear();
+        self.round.clear();
     }
-    if points.is_empty() { None } else { Some(Points::Sharp(Samples::new(points))) }
+
+    /// Adds the points of a shape; half-spaces have none. `gradient` tells which way is away from the mesh.
+    pub(super) fn fill(&mut self, shape: &Shape, region: &Region, gradient: impl Fn(Vec3) -> Vec3) {
+        let PointList { sharp, samples, round, normal_sums } = self;
+        match shape {
+            Shape::Sphere(s) => round.push(RoundPoint { centre: Vec3::ZERO, radius: s.radius }),
+            Shape::Capsule(c) => capsule(c, round),
+            Shape::Cuboid(c) => cuboid(c, region, sharp),
+            Shape::Cylinder(c) => cylinder(c, gradient, sharp),
+            Shape::Hull(hull) => hull_points(hull, region, normal_sums, sharp),
+            Shape::HalfSpace | Shape::Compound(_) | Shape::Mesh(_) => {}
+        }
+        samples.fill(sharp);
+    }
+
+    /// None if there are none.
+    pub(super) fn points(&self) -> Option<Points<'_>> {
+        if !self.sharp.is_empty() {
+            Some(Points::Sharp(&self.samples))
+        } else if !self.round.is_empty() {
+            Some(Points::Round(&self.round))
+        } else {
+            None
+        }
+    }
 }
 
 /// Points on the axis, no further apart than half the radius: the balls about them sag less than a thirtieth of it.
-fn capsule(c: &Capsule) -> Vec<RoundPoint> {
+fn capsule(c: &Capsule, points: &mut Vec<RoundPoint>) {
     let parts = (4.0 * c.half_height / c.radius).ceil().clamp(1.0, AXIS_PARTS_MAX);
-    (0..=parts as u32)
-        .map(|k| {
-            let along = 2.0 * (k as f32 / parts) - 1.0;
-            RoundPoint { centre: Vec3::new(0.0, along * c.half_height, 0.0), radius: c.radius }
-        })
-        .collect()
+    points.extend((0..=parts as u32).map(|k| {
+        let along = 2.0 * (k as f32 / parts) - 1.0;
+        RoundPoint { centre: Vec3::new(0.0, along * c.half_height, 0.0), radius: c.radius }
+    }));
 }
 
 fn cuboid(c: &Cuboid, region: &Region, points: &mut Vec<Sample>) {
@@ -76,8 +103,9 @@ fn cuboid(c: &Cuboid, region: &Region, points: &mut Vec<Sample>) {
     }
 }
 
-fn hull_points(hull: &Hull, region: &Region, points: &mut Vec<Sample>) {
-    let mut sums = vec![Vec3::ZERO; hull.vertices.len()];
+fn hull_points(hull: &Hull, region: &Region, sums: &mut Vec<Vec3>, points: &mut Vec<Sample>) {
+    sums.clear();
+    sums.resize(hull.vertices.len(), Vec3::ZERO);
     for e in &hull.edges {
         let normal = e.faces.map(|f| hull.faces[f as usize].normal).iter().sum::<Vec3>();
         for v in e.vertices {
@@ -86,7 +114,7 @@ fn hull_points(hull: &Hull, region: &Region, points: &mut Vec<Sample>) {
         let ends = e.vertices.map(|v| hull.vertices[v as usize]);
         edge(ends, normal.normalize_or_zero(), (region, region.spacing), points);
     }
-    for (v, sum) in hull.vertices.iter().zip(sums) {
+    for (v, sum) in hull.vertices.iter().zip(&*sums) {
         vertex(*v, sum.normalize_or_zero(), region, points);
     }
 }

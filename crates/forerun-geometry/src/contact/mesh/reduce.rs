@@ -3,12 +3,15 @@
 //! Sides of the contact are found by normal: the deepest candidate left and all whose normals are within 60 degrees of
 //! its own. Of each side up to eight points are kept that are far apart, deep ones first.
 
-use super::Candidate;
+use forerun_lanes::{LaneMask, Lanes, Portable, dispatched};
+
+use super::candidates::{Candidate, Candidates, Place, first_greatest};
 use super::directions::Direction;
-use super::points::RoundPoint;
+use super::smooth::{Taps, smooth};
+use super::{TOUCH_PART, WEIGHT_PART};
 use crate::Vec3;
 use crate::contact::{ContactPoint, Manifold};
-use crate::sdf::primitive::Surface;
+use crate::sdf::eight::{lane, splat};
 
 /// Most sides of a contact that are told apart.
 const SIDES_MAX: usize = 6;
@@ -20,105 +23,139 @@ const SIDE_COSINE: f32 = 0.5;
 ///
 /// Without this the farthest points win, however shallow, and piles sink in and never rest.
 const DEPTH_PENALTY: f32 = 8.0;
-/// Cosine of the largest angle by which smoothing may turn a normal: 20 degrees.
-const SMOOTH_COSINE: f32 = 0.94;
-/// Points nearer to each other than this are one. Metres.
-const SAME_POINT: f32 = 0.005;
-/// Points weigh in the mean normal by how far they are above this much more than the smallest separation. Metres.
-const WEIGHT_BAND: f32 = 0.01;
+
+/// The memory of a reduction.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Reduction {
+    side: Vec<Member8>,
+    /// The points that are kept, side by side.
+    chosen: Vec<Candidate>,
+    /// Where each side begins in `chosen`.
+    starts: Vec<usize>,
+    taps: Taps,
+}
+
+/// How the points of a side are spread.
+#[derive(Clone, Copy, Debug)]
+struct Spread {
+    /// The penalty for depth of the second four: the far side of a fast ring that comes in tilted is shallow now and deep at the end of the step.
+    far_penalty: f32,
+    /// Points are at least so far apart. Metres.
+    apart: f32,
+}
+
+/// Of a block of candidates those that belong to a side.
+#[derive(Clone, Copy, Debug)]
+struct Member8 {
+    block: usize,
+    /// How much larger their separation is than the smallest. Metres.
+    shallower: Portable,
+    /// To the nearest of those chosen; 0 for others than members. Square metres.
+    distance_squared: Portable,
+}
 
 /// Appends the manifolds of the candidates.
-pub(super) fn reduce(candidates: &mut Vec<Candidate>, directions: &[Direction], out: &mut Vec<Manifold>) {
-    for _ in 0..SIDES_MAX {
-        let Some(seed) = deepest(candidates) else { return };
-        let normal = candidates[seed].normal;
-        // The seed first; the others stay in the order in which they were found.
-        let mut side = vec![candidates.remove(seed)];
-        candidates.retain(|c| {
-            let belongs = c.normal.dot(normal) > SIDE_COSINE;
-            if belongs {
-                side.push(*c);
-            }
-            !belongs
-        });
-        let direction = &directions[side[0].direction];
-        let mut chosen = choose(&side, DEPTH_PENALTY * direction.near / direction.margin, 0.25 * direction.near);
-        for c in &mut chosen {
-            smooth(c, &directions[c.direction]);
-        }
-        emit(&chosen, 0.5 * direction.near, out);
-    }
-}
-
-/// The first of the candidates with the smallest separation.
-fn deepest(candidates: &[Candidate]) -> Option<usize> {
-    let mut best: Option<(usize, f32)> = None;
-    for (i, c) in candidates.iter().enumerate() {
-        if best.is_none_or(|(_, separation)| c.separation < separation) {
-            best = Some((i, c.separation));
-        }
-    }
-    best.map(|(i, _)| i)
-}
-
-/// Up to eight candidates of a side, the first among them: again and again the one farthest from those chosen, less a
-/// penalty for being shallow. `far_penalty` is that of the second four: the far side of a fast ring that comes in
-/// tilted is shallow now and deep at the end of the step.
-fn choose(side: &[Candidate], far_penalty: f32, same: f32) -> Vec<Candidate> {
-    let mut chosen = vec![side[0]];
-    let mut left: Vec<Left> = side
-        .iter()
-        .map(|c| Left {
-            position: c.position,
-            shallower: (c.separation - side[0].separation).max(0.0),
-            distance_squared: f32::INFINITY,
-        })
-        .collect();
-    while chosen.len() < POINTS_MAX {
-        let newest = chosen[chosen.len() - 1].position;
-        let penalty = if chosen.len() < POINTS_MAX / 2 { DEPTH_PENALTY } else { far_penalty };
-        let mut best = (same, None);
-        for (i, c) in left.iter_mut().enumerate() {
-            c.distance_squared = c.distance_squared.min(c.position.distance_squared(newest));
-            // Squared it saves the root of most: the distance must be above the best score and the penalty.
-            let needed = best.0 + penalty * c.shallower;
-            if c.distance_squared > needed * needed {
-                best = (c.distance_squared.sqrt() - penalty * c.shallower, Some(i));
-            }
-        }
-        let (_, Some(i)) = best else { break };
-        chosen.push(side[i]);
-    }
-    chosen
-}
-
-/// A candidate that may still be chosen.
-struct Left {
-    position: Vec3,
-    /// How much larger its separation is than the smallest. Metres.
-    shallower: f32,
-    /// To the nearest of those chosen. Square metres.
-    distance_squared: f32,
-}
-
-/// Replaces the normal of a candidate found in the field of a mesh by the smooth one.
-fn smooth(c: &mut Candidate, direction: &Direction) {
-    let Surface::Field(field) = &direction.surface else { return };
-    // Beyond the grid there is nothing to take differences of.
-    if !c.rough || !field.contains(c.point) {
+pub(super) fn reduce(
+    candidates: &mut Candidates,
+    directions: &[Option<Direction>; 2],
+    memory: &mut Reduction,
+    out: &mut Vec<Manifold>,
+) {
+    if candidates.blocks.is_empty() {
         return;
     }
-    let Some(smooth) = field.smooth_gradient(c.point).try_normalize() else { return };
-    let point = RoundPoint { centre: c.point, radius: 0.0 };
-    let smoothed = direction.candidate(point, smooth, c.separation, c.direction);
-    // On round surfaces the two are within a few degrees. At edges and in the middle of thin parts the differences mix
-    // sides that have nothing to do with each other.
-    if smoothed.normal.dot(c.normal) > SMOOTH_COSINE {
-        *c = smoothed;
+    memory.chosen.clear();
+    memory.starts.clear();
+    let Some(direction) = directions.iter().flatten().next() else { return };
+    let spread = Spread {
+        far_penalty: DEPTH_PENALTY * direction.near / direction.margin,
+        apart: TOUCH_PART * direction.near,
+    };
+    choose_points(candidates, &spread, memory);
+    smooth(&mut memory.chosen, directions, &mut memory.taps);
+    for (i, &start) in memory.starts.iter().enumerate() {
+        let end = memory.starts.get(i + 1).copied().unwrap_or(memory.chosen.len());
+        emit(&memory.chosen[start..end], WEIGHT_PART * direction.near, out);
     }
 }
 
-/// One manifold of up to four points, or two that share the points in turn.
+dispatched! {
+    /// Finds the sides and the points of each.
+    fn choose_points(candidates: &mut Candidates, spread: &Spread, memory: &mut Reduction) => choose_points_lanes
+}
+
+#[inline(always)]
+fn choose_points_lanes<F: Lanes>(candidates: &mut Candidates, spread: &Spread, memory: &mut Reduction) {
+    let Reduction { side, chosen, starts, .. } = memory;
+    for _ in 0..SIDES_MAX {
+        let Some(seed) = candidates.deepest::<F>() else { return };
+        take_side::<F>(candidates, seed, side);
+        let start = chosen.len();
+        starts.push(start);
+        chosen.push(candidates.at(seed));
+        while chosen.len() < start + POINTS_MAX {
+            let penalty =
+                if chosen.len() < start + POINTS_MAX / 2 { DEPTH_PENALTY } else { spread.far_penalty };
+            let newest = chosen[chosen.len() - 1].position;
+            let Some(place) = farthest::<F>(candidates, side, newest, (penalty, spread.apart)) else { break };
+            chosen.push(candidates.at(place));
+        }
+    }
+}
+
+/// Fills `side` with the candidates left whose normals are like that of the seed, and takes them out of those left.
+#[inline(always)]
+fn take_side<F: Lanes>(candidates: &mut Candidates, seed: Place, side: &mut Vec<Member8>) {
+    let (zero, infinite) = (F::zero(), F::splat(f32::INFINITY));
+    let of_seed = &candidates.blocks[seed.block];
+    let normal = splat::<F>(lane(&of_seed.normal, seed.lane));
+    let smallest = F::splat(of_seed.left.to_array()[seed.lane]);
+    side.clear();
+    for (k, block) in candidates.blocks.iter_mut().enumerate() {
+        let left = F::from_array(block.left.to_array());
+        let like = normal.dot(block.normal.form()).gt(F::splat(SIDE_COSINE)) & left.lt(infinite);
+        // The seed itself, whatever rounding says of the length of its normal.
+        let seed_bit = if k == seed.block { 1 << seed.lane } else { 0 };
+        let members = F::Mask::from_bits(like.bits() | seed_bit);
+        if !members.any() {
+            continue;
+        }
+        let shallower = members.select((left - smallest).max(zero), zero);
+        side.push(Member8 {
+            block: k,
+            shallower: Portable::from_array(shallower.to_array()),
+            distance_squared: Portable::from_array(members.select(infinite, zero).to_array()),
+        });
+        block.left = Portable::from_array(members.select(infinite, left).to_array());
+    }
+}
+
+/// The first of the members of a side that are farthest from those chosen, less a penalty for being shallow; none if
+/// all are at one of those: no farther than `apart` (metres). `newest` is the last one chosen.
+#[inline(always)]
+fn farthest<F: Lanes>(
+    candidates: &Candidates,
+    side: &mut [Member8],
+    newest: Vec3,
+    (penalty, apart): (f32, f32),
+) -> Option<Place> {
+    let (newest, penalty) = (splat::<F>(newest), F::splat(penalty));
+    let (mut best, mut at) = (F::splat(apart), F::zero());
+    for member in side {
+        let to_newest = candidates.blocks[member.block].position.form() - newest;
+        let distance_squared =
+            F::from_array(member.distance_squared.to_array()).min(to_newest.dot(to_newest));
+        member.distance_squared = Portable::from_array(distance_squared.to_array());
+        let score = distance_squared.sqrt() - penalty * F::from_array(member.shallower.to_array());
+        let better = score.gt(best);
+        best = better.select(score, best);
+        at = better.select(F::splat(member.block as f32), at);
+    }
+    first_greatest(best.to_array(), at.to_array(), apart)
+}
+
+/// One manifold of up to four points, or two that share the points in turn. Points this `band` (metres) shallower than the deepest have no weight in
+/// the mean normal.
 fn emit(chosen: &[Candidate], band: f32, out: &mut Vec<Manifold>) {
     let smallest = chosen[0].separation;
     let weight = |c: &Candidate| (smallest + band - c.separation).max(0.0);

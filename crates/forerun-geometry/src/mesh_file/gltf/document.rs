@@ -17,6 +17,12 @@ pub(super) struct Document {
     pub(super) buffers: Vec<Buffer>,
 }
 
+/// What documents of all versions have.
+#[derive(Debug, Deserialize)]
+pub(super) struct Versioned {
+    pub(super) asset: Option<Asset>,
+}
+
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Asset {

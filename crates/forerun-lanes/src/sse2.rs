@@ -5,17 +5,17 @@ use std::arch::x86_64::*;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
-use super::{LANES, LaneMask, Lanes, Row};
+use super::{LANES, LaneMask, Lanes, Row, last_pair, out_of_range};
 
 /// Eight numbers in two registers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(crate) struct Sse2(__m128, __m128);
+pub struct Sse2(__m128, __m128);
 
 /// Eight truth values, each all ones or all zeros.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(crate) struct Sse2Mask(__m128, __m128);
+pub struct Sse2Mask(__m128, __m128);
 
 // SAFETY: two registers of four f32 at the alignment of 32; every bit pattern is valid. All functions need SSE2 alone, which x86-64 has.
 unsafe impl Lanes for Sse2 {
@@ -73,6 +73,48 @@ unsafe impl Lanes for Sse2 {
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         unsafe { Sse2(_mm_min_ps(self.0, other.0), _mm_min_ps(self.1, other.1)) }
+    }
+
+    #[inline(always)]
+    fn to_whole(self) -> [u32; LANES] {
+        let mut whole = [0; LANES];
+        unsafe {
+            // Whole numbers below 2^23 are exact, and adding 2^23 puts them into the lowest bits.
+            let (power, low) = (_mm_set1_ps(8_388_608.0), _mm_set1_epi32(0x007f_ffff));
+            let halves = [self.0, self.1].map(|h| _mm_and_si128(_mm_castps_si128(_mm_add_ps(h, power)), low));
+            _mm_storeu_si128(whole.as_mut_ptr().cast(), halves[0]);
+            _mm_storeu_si128(whole.as_mut_ptr().add(4).cast(), halves[1]);
+        }
+        whole
+    }
+
+    #[inline(always)]
+    fn gather_pairs<const N: usize>(
+        list: &[i16],
+        index: &[u32; LANES],
+        offsets: &[u32; N],
+    ) -> [[Self; 2]; N] {
+        if !last_pair(list.len(), offsets).is_some_and(|last| index.iter().all(|i| *i <= last)) {
+            out_of_range(index, list.len());
+        }
+        let mut pairs = [[Self::zero(); 2]; N];
+        for k in 0..N {
+            let mut both = [0_i32; LANES];
+            for lane in 0..LANES {
+                // SAFETY: four bytes at an index that was found to be at or below the last at which they are in the list.
+                both[lane] = unsafe {
+                    list.as_ptr().add((index[lane] + offsets[k]) as usize).cast::<i32>().read_unaligned()
+                };
+            }
+            unsafe {
+                let halves =
+                    [_mm_loadu_si128(both.as_ptr().cast()), _mm_loadu_si128(both.as_ptr().add(4).cast())];
+                let low = halves.map(|h| _mm_cvtepi32_ps(_mm_srai_epi32::<16>(_mm_slli_epi32::<16>(h))));
+                let high = halves.map(|h| _mm_cvtepi32_ps(_mm_srai_epi32::<16>(h)));
+                pairs[k] = [Sse2(low[0], low[1]), Sse2(high[0], high[1])];
+            }
+        }
+        pairs
     }
 
     #[inline(always)]
@@ -143,6 +185,16 @@ impl LaneMask<Sse2> for Sse2Mask {
     #[inline(always)]
     fn bits(self) -> u32 {
         unsafe { (_mm_movemask_ps(self.0) | _mm_movemask_ps(self.1) << 4) as u32 }
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        unsafe {
+            let (all, low) = (_mm_set1_epi32(bits as i32), _mm_setr_epi32(1, 2, 4, 8));
+            let high = _mm_slli_epi32::<4>(low);
+            let set = |own| _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(all, own), own));
+            Sse2Mask(set(low), set(high))
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Lanes in AVX registers.
 //!
 //! # Safety
-//! Every function here uses AVX instructions without asking. All are inlined into functions that [`dispatched!`](super::dispatched) makes and calls
+//! Every function here uses AVX instructions without asking. All are inlined into functions that [`dispatched!`](crate::dispatched) makes and calls
 //! only after AVX2 has been detected; nothing else may use [`Avx2`]. With AVX-512 the same code has 32 registers.
 #![allow(unsafe_code, reason = "one of the rooms that use processor intrinsics")]
 
@@ -9,17 +9,17 @@ use std::arch::x86_64::*;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Sub, SubAssign};
 
-use super::{LANES, LaneMask, Lanes, Row};
+use super::{LANES, LaneMask, Lanes, Row, last_pair, out_of_range};
 
 /// Eight numbers in a register.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub(crate) struct Avx2(__m256);
+pub struct Avx2(__m256);
 
 /// Eight truth values, each all ones or all zeros.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub(crate) struct Avx2Mask(__m256);
+pub struct Avx2Mask(__m256);
 
 // SAFETY: eight f32 at the alignment of 32; every bit pattern is valid.
 unsafe impl Lanes for Avx2 {
@@ -74,6 +74,43 @@ unsafe impl Lanes for Avx2 {
     }
 
     #[inline(always)]
+    fn to_whole(self) -> [u32; LANES] {
+        let mut whole = [0; LANES];
+        unsafe {
+            // Whole numbers below 2^23 are exact, and adding 2^23 puts them into the lowest bits.
+            let bits = _mm256_castps_si256(_mm256_add_ps(self.0, _mm256_set1_ps(8_388_608.0)));
+            let low = _mm256_and_si256(bits, _mm256_set1_epi32(0x007f_ffff));
+            _mm256_storeu_si256(whole.as_mut_ptr().cast(), low);
+        }
+        whole
+    }
+
+    #[inline(always)]
+    fn gather_pairs<const N: usize>(
+        list: &[i16],
+        index: &[u32; LANES],
+        offsets: &[u32; N],
+    ) -> [[Self; 2]; N] {
+        let places = unsafe { _mm256_loadu_si256(index.as_ptr().cast()) };
+        let below = last_pair(list.len(), offsets).is_some_and(|last| unsafe { up_to(places, last as i32) });
+        if !below {
+            out_of_range(index, list.len());
+        }
+        let mut pairs = [[Self::zero(); 2]; N];
+        for k in 0..N {
+            // SAFETY: four bytes at an index that was found to be at or below the last at which they are in the list.
+            unsafe {
+                let start = list.as_ptr().add(offsets[k] as usize).cast();
+                let both = _mm256_i32gather_epi32::<2>(start, places);
+                let low = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(both));
+                let high = _mm256_srai_epi32::<16>(both);
+                pairs[k] = [Avx2(_mm256_cvtepi32_ps(low)), Avx2(_mm256_cvtepi32_ps(high))];
+            }
+        }
+        pairs
+    }
+
+    #[inline(always)]
     unsafe fn gather_raw(rows: *const Row, length: usize, index: &[u32; LANES]) -> [Self; LANES] {
         assert_below(index, length);
         let mut r = [unsafe { _mm256_setzero_ps() }; LANES];
@@ -99,25 +136,23 @@ unsafe impl Lanes for Avx2 {
     }
 }
 
-/// Panics unless all indices are below the length: eight checks in one.
+/// Panics unless all indices are below the length.
 #[inline(always)]
 fn assert_below(index: &[u32; LANES], length: usize) {
     let last = (length.min(1 << 31) as u32).wrapping_sub(1) as i32;
-    let below = length > 0
-        && unsafe {
-            let last = _mm256_set1_epi32(last);
-            let most = _mm256_max_epu32(_mm256_loadu_si256(index.as_ptr().cast()), last);
-            _mm256_movemask_epi8(_mm256_cmpeq_epi32(most, last)) == -1
-        };
-    if !below {
+    // SAFETY: as all of this room.
+    if length == 0 || !unsafe { up_to(_mm256_loadu_si256(index.as_ptr().cast()), last) } {
         out_of_range(index, length);
     }
 }
 
-#[cold]
-#[inline(never)]
-fn out_of_range(index: &[u32; LANES], length: usize) -> ! {
-    panic!("rows {index:?} of {length}");
+/// Whether no index is above `last`: eight checks in one.
+#[inline(always)]
+unsafe fn up_to(index: __m256i, last: i32) -> bool {
+    unsafe {
+        let last = _mm256_set1_epi32(last);
+        _mm256_movemask_epi8(_mm256_cmpeq_epi32(_mm256_max_epu32(index, last), last)) == -1
+    }
 }
 
 /// Eight rows of eight to eight columns.
@@ -154,6 +189,15 @@ impl LaneMask<Avx2> for Avx2Mask {
     #[inline(always)]
     fn bits(self) -> u32 {
         (unsafe { _mm256_movemask_ps(self.0) }) as u32
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        unsafe {
+            let own = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let set = _mm256_and_si256(_mm256_set1_epi32(bits as i32), own);
+            Avx2Mask(_mm256_castsi256_ps(_mm256_cmpeq_epi32(set, own)))
+        }
     }
 }
 
