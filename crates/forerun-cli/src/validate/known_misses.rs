@@ -60,6 +60,8 @@ const GAPS: &str = "free fall while the gaps that it starts with close, as far a
 const FAST: &str = "the box goes 0.6 m in a frame of 1/60; at 1/240 it holds";
 const BETWEEN: &str = "points along the edges of a mesh are as far apart as it is thick, 2 m here: the thin spike goes between them (hulls and boxes \
      hold it to a millimetre)";
+const WEDGED: &str = "the head stops the fall and the thread, at a slope of 1 in 19, has to stop the turn: 19 times the force, which the sweeps of one frame do not \
+     find; rests as it is";
 
 /// All of them, in the order of the cases.
 pub(crate) const KNOWN_MISSES: &[Miss] = &[
@@ -108,4 +110,10 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("degenerate", "spike in a hole: deepest overlap, m", 0.2781, BETWEEN),
     miss("degenerate", "spike in a crack: deepest overlap, m", 0.2608, BETWEEN),
     miss("degenerate", "cube on a cliff with the same edges: not at its height, m", 0.001402, RESTS_DEEP),
+    miss(
+        "nut",
+        "cells of 1.10 mm, 1/100: deepest overlap with the head on the nut, depths of the thread",
+        0.1895,
+        WEDGED,
+    ),
 ];

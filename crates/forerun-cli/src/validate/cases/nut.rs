@@ -100,8 +100,8 @@ struct Way {
     jam: f64,
     /// When the head came to the nut. Seconds.
     arrived: Option<f64>,
-    /// Metres.
-    deepest: f64,
+    /// Deepest overlap until then, and after. Metres.
+    deepest: [f64; 2],
     energy: f64,
 }
 
@@ -128,7 +128,8 @@ fn screw([bolt, nut]: &[Mesh; 2], rate: u32, figures: &mut Vec<Figure>) {
         way.gone = f64::from(pose.position.y) - f64::from(START);
         way.energy = way.energy.max(energy(states) / start - 1.0);
         if frame % 4 == 0 {
-            way.deepest = way.deepest.max(deepest([bolt, nut], [&pose, &bodies[0].own_pose(&states[0])]));
+            let most = &mut way.deepest[usize::from(way.arrived.is_some())];
+            *most = most.max(deepest([bolt, nut], [&pose, &bodies[0].own_pose(&states[0])]));
         }
         way.note(time);
     });
@@ -152,7 +153,8 @@ impl Way {
 
     fn report(&self, title: &str, ideal: f64, figures: &mut Vec<Figure>) {
         let name = |what: &str| format!("{title}: {what}");
-        let pitch = f64::from(THREAD.pitch);
+        let [pitch, depth] = [THREAD.pitch, THREAD.depth()].map(f64::from);
+        let [on_the_way, wedged] = self.deepest;
         let per_turn = self.gone / (self.turned / TAU);
         figures.extend([
             Figure::at_least(name("turns in 5 s"), -self.turned / TAU, 1.0),
@@ -163,8 +165,13 @@ impl Way {
             ),
             Figure::at_most(name("most off the true screw, pitches"), self.off / pitch, OFF_MAX),
             Figure::at_most(
-                name("deepest overlap, depths of the thread"),
-                self.deepest / f64::from(THREAD.depth()),
+                name("deepest overlap on the way, depths of the thread"),
+                on_the_way / depth,
+                OVERLAP_MAX,
+            ),
+            Figure::at_most(
+                name("deepest overlap with the head on the nut, depths of the thread"),
+                wedged / depth,
                 OVERLAP_MAX,
             ),
             Figure::at_most(name("longest jam, s"), self.jam, JAM_MAX),
