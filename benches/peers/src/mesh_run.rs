@@ -14,7 +14,9 @@ use crate::engine::{self, Engine, Motion};
 use crate::heap;
 use crate::links::{LinkCount, Links};
 use crate::measure::{Task, Times, on_its_threads, open};
+use crate::nut::{Nut, NutCount};
 use crate::overlap::TrueBodies;
+use crate::places::{self, PlaceCount};
 use crate::quality::{Meter, Own};
 use crate::shapes::{self, Fit};
 use crate::stage::Stage;
@@ -29,7 +31,7 @@ pub(crate) enum Extent {
     All,
     /// Times only: the rest is the same every time.
     Times,
-    /// Nothing but the heap that the world takes with boxes in the place of moving meshes.
+    /// Nothing but the heap that the world takes with boxes in the place of meshes.
     HeapOfBoxes,
 }
 
@@ -38,7 +40,7 @@ pub(crate) enum Extent {
 pub(crate) struct MeshAnswer {
     /// CPU time for making the shapes and the world from triangles. Milliseconds.
     pub(crate) setup_ms: f64,
-    /// Different meshes that move.
+    /// Different meshes.
     pub(crate) meshes: usize,
     /// What the engine's shapes are, against the meshes; none when not asked for.
     pub(crate) fit: Option<Fit>,
@@ -65,12 +67,15 @@ pub(crate) struct Worth {
     pub(crate) not_finite: usize,
     /// Of scenes with rings.
     pub(crate) links: Option<LinkCount>,
+    /// Of a scene with a nut on a bolt.
+    pub(crate) nut: Option<NutCount>,
+    pub(crate) places: PlaceCount,
 }
 
 /// With what it is done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Means<'a> {
-    /// How long the steps may take in all.
+    /// CPU time that the steps may take in all.
     pub(crate) limit: Duration,
     /// Where the hulls of meshes are kept from process to process.
     pub(crate) folder: Option<&'a Path>,
@@ -81,7 +86,8 @@ pub(crate) fn run(task: &Task, extent: Extent, means: Means<'_>) -> Result<MeshA
     on_its_threads(task, || {
         let made = make(task, extent, means.folder)?;
         let Made { mut world, setup_ms, meshes, fit, heap_bytes } = made;
-        let (times, motions) = step(&mut *world, task.frames, means.limit)?;
+        let frames = if extent == Extent::HeapOfBoxes { 0 } else { task.frames };
+        let (times, motions) = step(&mut *world, frames, means.limit)?;
         drop(world);
         let worth = if extent == Extent::All { Some(worth(&open(&task.scene)?, &motions)?) } else { None };
         Ok(MeshAnswer { setup_ms, meshes, fit, heap_bytes, times, worth })
@@ -101,6 +107,7 @@ fn make(task: &Task, extent: Extent, folder: Option<&Path>) -> Result<Made, Stri
     let heap_before = heap::in_use();
     let mut stage = Stage::of(&open(&task.scene)?)?;
     let meshes = shapes::moving(&stage);
+    let count = shapes::different(&stage);
     let (mut setup_ms, mut fit) = (0.0, None);
     if extent == Extent::HeapOfBoxes {
         put_boxes(&mut stage)?;
@@ -113,17 +120,16 @@ fn make(task: &Task, extent: Extent, folder: Option<&Path>) -> Result<Made, Stri
     let start = ProcessTime::now();
     let world = engine::build(task.kind, &stage, task.threads)?;
     setup_ms += 1000.0 * start.elapsed().as_secs_f64();
-    let count = meshes.len();
     // What is left is the engine's own, and what it shares of ours.
     drop((stage, meshes));
     let heap_bytes = heap::in_use().zip(heap_before).map(|(now, before)| now.saturating_sub(before));
     Ok(Made { world, setup_ms, meshes: count, fit, heap_bytes })
 }
 
-/// A small box in the place of every moving mesh.
+/// A small box in the place of every mesh.
 fn put_boxes(stage: &mut Stage) -> Result<(), String> {
     let small = Shape::cuboid(Vec3::splat(0.01)).map_err(|error| error.to_string())?;
-    for actor in stage.actors.iter_mut().filter(|actor| !actor.is_fixed()) {
+    for actor in &mut stage.actors {
         if matches!(actor.def.shape, Shape::Mesh(_)) {
             actor.def.shape = small.clone();
         }
@@ -134,11 +140,11 @@ fn put_boxes(stage: &mut Stage) -> Result<(), String> {
 /// Steps and takes the time of each step; the motions after each.
 fn step(world: &mut dyn Engine, frames: u32, limit: Duration) -> Result<(Times, Vec<Vec<Motion>>), String> {
     let clock = Clock::system();
-    let start = clock.now();
+    let start = ProcessTime::now();
     let count = frames as usize;
     let (mut cpu_ms, mut wall_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut motions = Vec::with_capacity(count);
-    while cpu_ms.len() < count && clock.now() - start < limit {
+    while cpu_ms.len() < count && start.elapsed() < limit {
         let (wall_start, cpu_start) = (clock.now(), ProcessTime::now());
         world.step()?;
         let (cpu, wall) = (cpu_start.elapsed(), clock.now() - wall_start);
@@ -153,10 +159,14 @@ fn worth(scene: &Scene, motions: &[Vec<Motion>]) -> Result<Worth, String> {
     let stage = Stage::of(scene)?;
     let bodies = TrueBodies::of(&stage);
     let mut links = Links::of(scene, &stage);
+    let mut nut = Nut::of(scene, &stage);
     let mut meter = Meter::new(scene)?;
     let (mut overlap_max_m, mut overlap_end_m) = (0.0_f32, 0.0);
     for (frame, motions_now) in motions.iter().enumerate() {
         links.look_at(motions_now);
+        if let Some(nut) = &mut nut {
+            nut.look_at(motions_now);
+        }
         let is_last = frame + 1 == motions.len();
         if is_last || frame.is_multiple_of(LOOK_EVERY) {
             overlap_end_m = bodies.deepest_m(motions_now);
@@ -174,5 +184,7 @@ fn worth(scene: &Scene, motions: &[Vec<Motion>]) -> Result<Worth, String> {
         lost: if let Own::Lost { count } = at_end.own { count } else { 0 },
         not_finite: at_end.not_finite,
         links: links.finish(),
+        nut: nut.map(|nut| nut.finish()),
+        places: motions.last().map(|end| places::at_end(scene, &stage, end)).unwrap_or_default(),
     })
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use cpu_time::ProcessTime;
 use forerun::Shape;
 use forerun::Vec3;
-use forerun::geometry::shape::Mesh;
+use forerun::geometry::shape::{Mesh, MeshDraft};
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{self, Kind};
@@ -40,6 +40,18 @@ pub(crate) fn moving(stage: &Stage) -> Vec<(usize, Arc<Mesh>)> {
     meshes
 }
 
+/// How many different meshes there are, fixed ones too.
+pub(crate) fn different(stage: &Stage) -> usize {
+    let mut meshes: Vec<*const Mesh> = (stage.actors.iter())
+        .filter_map(
+            |actor| if let Shape::Mesh(mesh) = &actor.def.shape { Some(Arc::as_ptr(mesh)) } else { None },
+        )
+        .collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    meshes.len()
+}
+
 /// Makes the stage what the engine takes, and says how long making the shapes from triangles took: of ours the fields once more, of others the cutting.
 /// Pieces are kept in a folder, if one is given. CPU milliseconds.
 pub(crate) fn prepare(
@@ -53,7 +65,8 @@ pub(crate) fn prepare(
     }
     let start = ProcessTime::now();
     for (_, mesh) in meshes {
-        Mesh::new(mesh.vertices.clone(), mesh.triangles.clone()).map_err(|error| error.to_string())?;
+        let draft = MeshDraft::new(mesh.vertices.clone(), mesh.triangles.clone(), mesh.options());
+        draft.and_then(|draft| draft.bake(&|_, _| {})).map_err(|error| error.to_string())?;
     }
     Ok(1000.0 * start.elapsed().as_secs_f64())
 }

@@ -28,7 +28,7 @@ pub(crate) enum Solid {
 impl Solid {
     pub(crate) fn of(shape: &Shape) -> Self {
         match shape {
-            Shape::Mesh(mesh) if mesh.closed => Solid::Mesh(TrueMesh::new(mesh.clone())),
+            Shape::Mesh(mesh) if mesh.has_inside() => Solid::Mesh(TrueMesh::new(mesh.clone())),
             Shape::Mesh(_) => Solid::Nothing,
             Shape::Compound(compound) => {
                 Solid::Parts(compound.parts.iter().map(|(at, part)| (*at, Solid::of(part))).collect())

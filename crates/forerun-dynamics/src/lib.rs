@@ -10,6 +10,7 @@ pub mod body;
 pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
+mod carried;
 pub mod detection;
 pub mod meter;
 pub mod narrow_phase;

@@ -6,7 +6,8 @@ use forerun_geometry::{Aabb, Vec3};
 use rayon::prelude::*;
 
 use crate::bounds::swept_bound;
-use crate::narrow_phase::{Contact, find_contacts};
+use crate::carried::Carried;
+use crate::narrow_phase::Contact;
 use crate::plan::{Plan, half_thickness, pack};
 use crate::solver::{Batch, Ends, rest_after_slices};
 use crate::step::{Group, Member};
@@ -57,8 +58,8 @@ struct Part<'a> {
     dynamic: usize,
     /// By member: its place in that order.
     place: Vec<u32>,
-    /// Pairs of members, sorted.
-    pairs: Vec<(u32, u32)>,
+    /// Between members.
+    carried: Carried,
     /// Where each member may be in this frame: nobody looked for contacts elsewhere.
     reach: Vec<Aabb>,
 }
@@ -179,6 +180,7 @@ impl<'a> Slicer<'a> {
         parts.map(|(range, pairs)| self.part(&chosen[range.clone()], pairs)).collect()
     }
 
+    /// `pairs`: of members of the group, sorted.
     fn part(&self, islands: &[u32], mut pairs: Vec<(u32, u32)>) -> Part<'a> {
         let mut sources: Vec<u32> =
             islands.iter().flat_map(|&island| self.plan.members(island)).copied().collect();
@@ -188,6 +190,14 @@ impl<'a> Slicer<'a> {
         let local = |i: u32| sources.partition_point(|&source| source < i) as u32;
         pairs.iter_mut().for_each(|(i, j)| (*i, *j) = (local(*i), local(*j)));
         let members: Vec<Member> = sources.iter().map(|&i| self.group.members[i as usize]).collect();
+        let contacts = islands.iter().flat_map(|&island| self.plan.contacts(island));
+        let mut contacts: Vec<u32> = contacts.map(|ends| ends.contact).collect();
+        contacts.sort_unstable();
+        let contacts = contacts.iter().map(|&k| {
+            let contact = self.group.contacts[k as usize];
+            Contact { first: local(contact.first), second: local(contact.second), ..contact }
+        });
+        let carried = Carried::new(pairs, contacts.collect(), &members, self.environment);
         let reach = members.iter().map(|m| swept_bound(m.body, &m.state, self.environment)).collect();
         let (mut order, others): (Vec<u32>, Vec<u32>) =
             (0..members.len() as u32).partition(|&i| members[i as usize].body.is_dynamic());
@@ -197,7 +207,7 @@ impl<'a> Slicer<'a> {
         for (k, &i) in order.iter().enumerate() {
             place[i as usize] = k as u32;
         }
-        Part { members, sources, order, dynamic, place, pairs, reach }
+        Part { members, sources, order, dynamic, place, carried, reach }
     }
 
     /// One slice of all parts.
@@ -210,8 +220,9 @@ impl<'a> Slicer<'a> {
     ) -> Vec<Batch<'b>> {
         let mut environment = *self.environment;
         environment.settings.frame_seconds /= self.count as f32;
+        parts.par_iter_mut().for_each(|part| part.carried.look(&part.members, &environment));
         let found: Vec<Vec<Contact>> =
-            parts.iter().map(|part| find_contacts(&part.members, &part.pairs, &environment)).collect();
+            parts.iter_mut().map(|part| std::mem::take(&mut part.carried.contacts)).collect();
         let mut batches: Vec<Batch> = batches.into_iter().map(Batch::emptied).collect();
         let used = &mut batches[..parts.len()];
         let notes = run.notes.is_some();
@@ -224,14 +235,18 @@ impl<'a> Slicer<'a> {
         });
         run.observer.after(Stage::Collisions);
         solve(used, run.observer);
-        for (part, batch) in parts.iter_mut().zip(used) {
+        for (k, (part, batch)) in parts.iter_mut().zip(used).enumerate() {
             self.note(batch, run);
+            part.carried.contacts.clone_from(&found[k]);
+            let mut next: Vec<BodyState> = part.members.iter().map(|m| m.state).collect();
             for (state, &i) in batch.next.iter_mut().zip(&part.order) {
-                let member = &mut part.members[i as usize];
+                let member = &part.members[i as usize];
                 // Rest is counted in whole frames: at the end.
                 *state = within(member.body, BodyState { rest: 0, ..*state }, &part.reach[i as usize]);
-                member.state = *state;
+                next[i as usize] = *state;
             }
+            part.carried.follow(&part.members, &next);
+            part.members.iter_mut().zip(&next).for_each(|(member, next)| member.state = *next);
             if last {
                 self.keep(batch, run);
             }

@@ -262,7 +262,7 @@ const TOML: &[Bad] = &[
         text: "[meshes.mug]\nfile = \"mug.fbx\"\n",
         line: 3,
         field: "meshes.mug.file",
-        says: &[".obj or .stl"],
+        says: &[".gltf or .glb"],
     },
     Bad {
         what: "mesh of two formulas",

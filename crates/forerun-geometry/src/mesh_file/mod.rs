@@ -28,7 +28,7 @@ pub use stl::parse_stl;
 const LARGEST_FILE: u64 = 1 << 30;
 
 /// A solid larger than this was most likely drawn in millimetres. Metres.
-pub const LIKELY_MILLIMETRES: f32 = 50.0;
+pub const LIKELY_MILLIMETRES: f32 = 20.0;
 
 /// Which axis of a file points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

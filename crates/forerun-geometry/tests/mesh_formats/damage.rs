@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use forerun_geometry::Vec3;
 use forerun_geometry::mesh_file::{ParseError, TriangleList, parse_gltf, parse_obj, parse_ply, parse_stl};
-use forerun_geometry::shape::{Mesh, mesh_make};
+use forerun_geometry::shape::{Mesh, MeshDraft, MeshOptions, mesh_make};
 
 use crate::writers::{Ply, embedded, glb, gltf, obj, ply, stl_binary, stl_text};
 
@@ -147,15 +147,9 @@ fn damaged_files_give_a_mesh_or_a_message() {
                 Ok(list) => {
                     assert!(list.vertices.iter().all(|v| v.is_finite()), "{name} {round}");
                     parsed += 1;
-                    // Fields take long to bake.
-                    if round % 16 != 0 {
-                        continue;
-                    }
-                    let closed = Mesh::new(list.vertices.clone(), list.triangles.clone());
-                    meshes += usize::from(closed.is_ok());
-                    if closed.is_ok() {
-                        assert!(Mesh::open(list.vertices, list.triangles).is_ok(), "{name} {round}");
-                    }
+                    // Not baked: that takes long.
+                    let draft = MeshDraft::new(list.vertices, list.triangles, MeshOptions::default());
+                    meshes += usize::from(draft.is_ok());
                 }
                 Err(error) => {
                     refused += 1;
@@ -165,7 +159,7 @@ fn damaged_files_give_a_mesh_or_a_message() {
             }
         }
         assert!(
-            parsed > 50 && meshes > 1 && refused > 500,
+            parsed > 50 && meshes > 10 && refused > 500,
             "{name}: {parsed} read, {meshes} meshes, {refused} refused"
         );
     }
@@ -218,7 +212,7 @@ fn bad_surfaces_of_good_files_are_mended_or_refused_by_name() {
         assert!(error.contains("vertex 5") && error.contains("finite"), "{error}");
     }
     // Far out, but finite: no panic, no endless grid.
-    for huge in [1e10, 1e19, 1e30, f32::MAX] {
+    for huge in [1e19, f32::MAX] {
         let _ = make(&|list| list.vertices[5].y = huge);
         let _ = make(&|list| list.vertices.iter_mut().for_each(|v| *v *= huge));
         let _ = make(&|list| list.vertices.iter_mut().for_each(|v| *v /= huge));

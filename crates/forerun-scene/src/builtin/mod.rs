@@ -13,6 +13,7 @@ mod piles;
 mod sliding;
 mod structures;
 mod towers;
+mod toys;
 
 use crate::error::{Fault, SceneError};
 use crate::scene::Scene;
@@ -88,6 +89,12 @@ static BUILT_INS: &[BuiltIn] = &[
     sized("chain", (12, 100, "links"), "A chain of interlocked links hangs", mechanisms::chain),
     single("nut", "A nut falls down the thread of a bolt", mechanisms::nut),
     sized("swing", (8, 100, "links"), "A chain of rings swings into a heap", groups::swing),
+    sized("mugs", (40, 1000, "mugs"), "Mugs on hooks, and as many that fall on them", toys::mugs),
+    sized("bowl", (60, 1000, "things"), "Gears, jacks, knots, letters and more fall into a bowl", toys::bowl),
+    sized("chairs", (50, 1000, "chairs"), "Chairs fall on a heap", toys::chairs),
+    sized("letters", (42, 1000, "letters"), "Letters fall and lie", toys::letters),
+    sized("gears", (8, 100, "gears"), "Gears in mesh round pegs; the first is turned", toys::gears),
+    sized("hills", (60, 10_000, "things"), "All sorts of things fall on hills, an open mesh", toys::hills),
     sized("pile", (1000, 100_000, "boxes"), "Boxes in a pit, one heap that comes to rest", groups::pile),
     sized("hail", (500, 10_000, "balls"), "Elastic balls at 50 m/s between thin walls", groups::hail),
     sized("cradle", (5, 1000, "balls"), "A row of elastic balls between two walls", structures::cradle),

@@ -38,6 +38,11 @@ impl BodyEntry {
         self
     }
 
+    pub(super) fn kinematic(mut self) -> BodyEntry {
+        self.kind = KindEntry::Kinematic;
+        self
+    }
+
     pub(super) fn surface(mut self, friction: f32, restitution: f32) -> BodyEntry {
         self.friction = Some(friction);
         self.restitution = Some(restitution);

@@ -7,7 +7,7 @@ use forerun_lanes::{LaneMask, Lanes, Portable, dispatched};
 
 use super::candidates::{Candidate, Candidates, Place, first_greatest};
 use super::directions::Direction;
-use super::smooth::{Taps, smooth};
+use super::smooth::smooth;
 use super::{TOUCH_PART, WEIGHT_PART};
 use crate::Vec3;
 use crate::contact::{ContactPoint, Manifold};
@@ -32,7 +32,8 @@ pub(super) struct Reduction {
     chosen: Vec<Candidate>,
     /// Where each side begins in `chosen`.
     starts: Vec<usize>,
-    taps: Taps,
+    /// Those of the chosen whose normals are smoothed, by their places in the list.
+    rough: Vec<u32>,
 }
 
 /// How the points of a side are spread.
@@ -72,7 +73,7 @@ pub(super) fn reduce(
         apart: TOUCH_PART * direction.near,
     };
     choose_points(candidates, &spread, memory);
-    smooth(&mut memory.chosen, directions, &mut memory.taps);
+    smooth(&mut memory.chosen, directions, &mut memory.rough);
     for (i, &start) in memory.starts.iter().enumerate() {
         let end = memory.starts.get(i + 1).copied().unwrap_or(memory.chosen.len());
         emit(&memory.chosen[start..end], WEIGHT_PART * direction.near, out);
@@ -151,7 +152,7 @@ fn farthest<F: Lanes>(
         best = better.select(score, best);
         at = better.select(F::splat(member.block as f32), at);
     }
-    first_greatest(best.to_array(), at.to_array(), apart)
+    first_greatest(best, at, apart)
 }
 
 /// One manifold of up to four points, or two that share the points in turn. Points this `band` (metres) shallower than the deepest have no weight in
