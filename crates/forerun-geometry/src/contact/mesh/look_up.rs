@@ -2,6 +2,7 @@
 
 use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched};
 
+use super::TOUCH_PART;
 use super::candidates::{Block, Candidates};
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
@@ -17,14 +18,11 @@ use crate::sdf::{Sample, Samples};
 const GRADIENT_SQUARED_MIN: f32 = 0.01;
 
 /// The corners of boxes face what they stand on with a cosine of -0.58, edges and smooth surfaces better. Points that
-/// face the surface less well are asked again.
+/// face the surface less well are asked again where they touch it.
 const FACING_WELL: f32 = -0.45;
 
 /// Points whose surroundings have the same normal, but for rounding, are inside a plane.
 const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
-
-/// They are if they are inside the surface, or this close to it. Metres.
-const BESIDE: f32 = 0.005;
 
 /// Points with their outward normals, in the field's frame.
 pub(super) struct Eight<F> {
@@ -186,7 +184,8 @@ impl Direction<'_> {
             & (distance + closing).lt(F::splat(self.near))
             & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
         let well = facing.lt(F::splat(FACING_WELL)).bits();
-        let doubtful = (near & distance.lt(F::splat(BESIDE))).bits() & asked & (beside | !well);
+        let doubtful =
+            (near & distance.lt(F::splat(TOUCH_PART * self.near))).bits() & asked & (beside | !well);
         Answers { distance, normal, found: (near & found).bits() & asked, doubtful }
     }
 
