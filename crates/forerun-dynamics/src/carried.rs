@@ -146,12 +146,8 @@ mod tests {
     }
 
     fn members(bodies: &[(Body, BodyState); 2]) -> Vec<Member<'_>> {
-        let member = |(i, (body, state)): (usize, &(Body, BodyState))| Member {
-            id: BodyId(i as u32),
-            body,
-            state: *state,
-        };
-        bodies.iter().enumerate().map(member).collect()
+        let ids = (0..).map(BodyId);
+        ids.zip(bodies).map(|(id, (body, state))| Member { id, body, state: *state }).collect()
     }
 
     /// The contact of the two after the ball has moved, with its separation made 1 mm larger than it was found; and looked for again, or not.
