@@ -345,7 +345,7 @@ fn strip(left: &[(u32, i64)], right: &[(u32, i64)], turned: i64, triangles: &mut
 
 fn columns(segments: u32) -> Result<(), ShapeError> {
     count("segments", segments, COLUMNS.0..=COLUMNS.1)?;
-    if segments % 6 == 0 {
+    if segments.is_multiple_of(6) {
         return Ok(());
     }
     Err(ShapeError::new("segments", format!("must be a multiple of 6, is {segments}")))
