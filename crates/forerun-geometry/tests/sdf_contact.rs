@@ -195,6 +195,21 @@ fn a_fast_body_is_seen_in_time() {
 }
 
 #[test]
+fn of_two_that_fall_together_one_may_be_stopped() {
+    let torus = torus();
+    let (lower, upper) = (at(&torus, Vec3::ZERO), at(&torus, Vec3::Y * 0.5));
+    let meet = |motion: Motion| {
+        let mut out = Vec::new();
+        let falling = [lower, upper].map(|placed| Placed { motion, ..placed });
+        contact_manifolds(&falling[0], &falling[1], 0.36, &mut out);
+        out
+    };
+    assert!(meet(Motion::default()).is_empty());
+    let found = meet(Motion { linear: Vec3::Y * -0.3, ..Motion::default() });
+    assert!((smallest_separation(&found) - 0.1).abs() < 0.02, "{}", smallest_separation(&found));
+}
+
+#[test]
 fn swapping_the_bodies_mirrors_the_manifolds() {
     let torus = torus();
     let mut random = Random(7);

@@ -23,9 +23,11 @@ fn check(mesh: &Mesh) {
     assert!(mass.principal_inertia.is_finite());
 }
 
-fn make(vertices: &[Vec3], triangles: &[[u32; 3]]) {
+/// `size`: about that of the whole. Metres.
+fn make(vertices: &[Vec3], triangles: &[[u32; 3]], size: f32) {
     for inside in [Inside::Needed, Inside::Optional] {
-        let options = MeshOptions { inside, cell: None };
+        // As fine as thin walls ask for would take long.
+        let options = MeshOptions { inside, cell: Some(0.05 * size) };
         let made = MeshDraft::new(vertices.to_vec(), triangles.to_vec(), options);
         match made.and_then(|draft| Ok((draft.bake(&|_, _| {})?, draft))) {
             Ok((mesh, draft)) => {
@@ -62,7 +64,7 @@ proptest! {
     ) {
         let count = vertices.len() as u32;
         let triangles: Vec<[u32; 3]> = picks.iter().map(|t| t.map(|i| i % count)).collect();
-        make(&vertices.iter().map(|v| *v * scale).collect::<Vec<_>>(), &triangles);
+        make(&vertices.iter().map(|v| *v * scale).collect::<Vec<_>>(), &triangles, 6.0 * scale);
     }
 
     #[test]
@@ -85,7 +87,7 @@ proptest! {
         for drop in drops {
             triangles.remove(drop.index(triangles.len()));
         }
-        make(&vertices, &triangles);
+        make(&vertices, &triangles, 6.0);
     }
 
     #[test]
@@ -107,7 +109,8 @@ proptest! {
             triangles[t].swap(0, 1);
         }
         // Corners of two boxes at one place hang the boxes together; what is flipped there may be told otherwise.
-        let mesh = Mesh::new(vertices, triangles);
+        let options = MeshOptions { inside: Inside::Needed, cell: Some(0.15) };
+        let mesh = MeshDraft::new(vertices, triangles, options).and_then(|draft| draft.bake(&|_, _| {}));
         prop_assume!(mesh.as_ref().is_ok_and(|m| m.repairs.welded_vertices == 0));
         let mesh = mesh.expect("it was just asked");
         prop_assert!(mesh.enclosure != Enclosure::Open);

@@ -318,7 +318,7 @@ fn draw_views(mesh: &Arc<Mesh>) -> Canvas {
     };
     let mut canvas = Canvas::new(2 * VIEW, VIEW);
     for (left, from) in [(0, Vec3::new(0.6, 0.5, 1.0)), (VIEW, Vec3::new(-0.8, 0.7, -1.0))] {
-        let camera = Camera::fitting(&seen, from, 1.0);
+        let camera = Camera::fitting(mesh.vertices.iter().copied(), from, 1.0);
         let view = View { camera, items: std::slice::from_ref(&item), grounds: &[ground], seen };
         canvas.paste(&draw(&view, VIEW, VIEW), left, 0);
     }

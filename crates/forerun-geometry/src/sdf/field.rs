@@ -73,12 +73,12 @@ impl Field {
         point.cmpge(bounds.min).all() && point.cmple(bounds.max).all()
     }
 
-    /// Number of fine cells along x, y and z.
+    /// Number of cells along x, y and z.
     pub(crate) fn cells(&self) -> [usize; 3] {
         self.size.map(|n| n - 1)
     }
 
-    /// The fine cell that a point is in; the nearest one for a point beyond the grid.
+    /// The cell that a point is in; the nearest one for a point beyond the grid.
     pub(crate) fn cell_of(&self, point: Vec3) -> [usize; 3] {
         let place = (point - self.origin) / self.cell;
         // Casts saturate, and what is not a number becomes 0.
@@ -186,11 +186,11 @@ impl LookUp for Field {
 
     /// Far from the surface, as most points are, the gradient is not worked out.
     #[inline(always)]
-    fn look_up_near<F: Lanes>(&self, points: V8<F>, limit: f32) -> Option<(F, V8<F>)> {
+    fn look_up_near<F: Lanes>(&self, points: V8<F>, asked: u32, limit: f32) -> Option<(F, V8<F>)> {
         let place = self.place(points);
         let cell = self.cell_at(&place);
         if place.inside().bits() == ALL {
-            let near = cell.distance.lt(F::splat(limit)).any();
+            let near = cell.distance.lt(F::splat(limit)).bits() & asked != 0;
             return if near { Some((cell.distance, cell.gradient(self, &place))) } else { None };
         }
         Some(cell.answer(&place, cell.gradient(self, &place)))

@@ -36,16 +36,26 @@ pub(crate) trait LookUp {
     /// the true distance or more.
     fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>);
 
-    /// [`LookUp::look_up`]; may be none where all distances are `limit` (metres) or more.
+    /// [`LookUp::look_up`] where only some of eight points are `asked` for; the answers for the others say nothing.
     #[inline(always)]
-    fn look_up_near<F: Lanes>(&self, points: V8<F>, limit: f32) -> Option<(F, V8<F>)> {
-        let (distances, gradients) = self.look_up(points);
-        if distances.lt(F::splat(limit)).any() { Some((distances, gradients)) } else { None }
+    fn look_up_some<F: Lanes>(&self, points: V8<F>, _asked: u32) -> (F, V8<F>) {
+        self.look_up(points)
+    }
+
+    /// [`LookUp::look_up_some`]; may be none where all distances are `limit` (metres) or more.
+    #[inline(always)]
+    fn look_up_near<F: Lanes>(&self, points: V8<F>, asked: u32, limit: f32) -> Option<(F, V8<F>)> {
+        let (distances, gradients) = self.look_up_some(points, asked);
+        let near = distances.lt(F::splat(limit)).bits() & asked != 0;
+        if near { Some((distances, gradients)) } else { None }
     }
 
     /// Lower bounds of the signed distances, for culling; exact (but for a grid) inside a grid's box.
     fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F;
 }
+
+/// The bits of all eight points.
+const ALL: u32 = (1 << LANES) - 1;
 
 impl LookUp for Surface<'_> {
     #[inline(always)]
@@ -70,6 +80,16 @@ impl LookUp for Surface<'_> {
     }
 
     #[inline(always)]
+    fn look_up_some<F: Lanes>(&self, p: V8<F>, asked: u32) -> (F, V8<F>) {
+        if let Surface::Sheet(skin, depth_limit) = self {
+            let (distance, gradient) = sheet(&p.form(), skin, *depth_limit, asked);
+            (F::from_array(distance), gradient.form())
+        } else {
+            self.look_up(p)
+        }
+    }
+
+    #[inline(always)]
     fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
         match self {
             Surface::Field(field) => field.lower_bound(p),
@@ -79,21 +99,7 @@ impl LookUp for Surface<'_> {
     }
 }
 
-/// The bits of all eight points.
-const ALL: u32 = (1 << LANES) - 1;
-
 impl Surface<'_> {
-    /// [`LookUp::look_up`] where only some of eight points are asked for; the answers for the others say nothing.
-    #[inline(always)]
-    pub(crate) fn look_up_some<F: Lanes>(&self, p: V8<F>, asked: u32) -> (F, V8<F>) {
-        if let Surface::Sheet(skin, depth_limit) = self {
-            let (distance, gradient) = sheet(&p.form(), skin, *depth_limit, asked);
-            (F::from_array(distance), gradient.form())
-        } else {
-            self.look_up(p)
-        }
-    }
-
     /// Signed distance and gradient at one point; in a field from the triangles of its mesh, exact at any distance.
     /// `guess` is for the next point close by.
     pub(crate) fn exact(&self, p: Vec3, skin: Option<&Skin<'_>>, guess: &mut Option<Nearest>) -> (f32, Vec3) {

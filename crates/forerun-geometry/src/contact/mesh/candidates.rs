@@ -111,3 +111,20 @@ pub(super) fn first_greatest<F: Lanes>(numbers: F, blocks: F, floor: f32) -> Opt
     }
     Some(Place { block: blocks[best] as usize, lane: best })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_equals_the_first_candidate_is_the_greatest() {
+        let greatest = |numbers: [f32; 8], blocks: [f32; 8]| {
+            first_greatest(Portable::from_array(numbers), Portable::from_array(blocks), 0.5)
+        };
+        let blocks = [3.0, 2.0, 2.0, 1.0, 0.0, 4.0, 4.0, 9.0];
+        let place = |block, lane| Some(Place { block, lane });
+        assert_eq!(greatest([1.0, 1.0, 1.0, 0.9, 0.0, 1.0, 1.0, 0.6], blocks), place(2, 1));
+        assert_eq!(greatest([1.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.1], blocks), place(9, 7));
+        assert_eq!(greatest([0.5, 0.4, -1.0, 0.5, f32::NAN, f32::NEG_INFINITY, 0.0, 0.1], blocks), None);
+    }
+}

@@ -3,7 +3,7 @@
 use forerun_lanes::{Lanes, V8};
 use glam::Mat3;
 
-use super::{MOTION_AHEAD, NEAR};
+use super::{MOTION_AHEAD, near};
 use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
 use crate::sdf::blur::Blur;
@@ -63,7 +63,7 @@ pub(super) struct Direction<'a> {
     pub(super) goes: Going,
     /// How the field is.
     pub(super) comes: Going,
-    /// What moves by x against the other comes nearer to it than the tangents say by up to this times x²: surfaces are bent. 1/m
+    /// What moves by x against the other comes nearer to it than tangents say by up to this times x²: surfaces are bent. 1/m
     pub(super) bend: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
     pub(super) inset: f32,
@@ -209,9 +209,9 @@ fn direction<'a>(
         field_axes,
         goes: Going::new(&sampled.motion, at, &into_field),
         comes: Going::new(&field.motion, at, &into_field),
-        bend: bend(sampled.shape) + bend(field.shape),
+        bend: bend(sampled.shape, field.shape),
         inset: INSET_PART * sampled.shape.half_thickness().min(field.shape.half_thickness()),
-        near: NEAR.min(margin),
+        near: near(sampled.shape, field.shape, margin),
         margin,
     })
 }
@@ -237,10 +237,14 @@ fn primitive_surface<'a>(shape: &Shape, planes: &'a [(Vec3, f32)]) -> Option<Sur
     })
 }
 
-/// See [`Direction::bend`]: half of one over the radius of the bends that matter, taken to be that of the mesh. What primitives there are is convex, and flat
-/// enough: what moves past comes no nearer than their tangents say.
-fn bend(shape: &Shape) -> f32 {
-    if let Shape::Mesh(mesh) = shape { 0.5 / mesh.collider().radius } else { 0.0 }
+/// See [`Direction::bend`]: half of one over the radius of the bends that matter, for each of two meshes taken to be its own. Beside what is flat or convex
+/// tangents tell the truth, but for turns.
+fn bend(sampled: &Shape, field: &Shape) -> f32 {
+    let of = |mesh: &Mesh| 0.5 / mesh.collider().radius;
+    match (sampled, field) {
+        (Shape::Mesh(sampled), Shape::Mesh(field)) => of(sampled) + of(field),
+        _ => 0.0,
+    }
 }
 
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.

@@ -2,6 +2,7 @@
 
 use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched};
 
+use super::TOUCH_PART;
 use super::candidates::{Block, Candidates};
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
@@ -17,14 +18,11 @@ use crate::sdf::{Sample, Samples};
 const GRADIENT_SQUARED_MIN: f32 = 0.01;
 
 /// The corners of boxes face what they stand on with a cosine of -0.58, edges and smooth surfaces better. Points that
-/// face the surface less well are asked again.
+/// face the surface less well are asked again where they touch it.
 const FACING_WELL: f32 = -0.45;
 
 /// Points whose surroundings have the same normal, but for rounding, are inside a plane.
 const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
-
-/// They are if they are inside the surface, or this close to it. Metres.
-const BESIDE: f32 = 0.005;
 
 /// Points with their outward normals, in the field's frame.
 pub(super) struct Eight<F> {
@@ -35,27 +33,36 @@ pub(super) struct Eight<F> {
 }
 
 /// What the field says to them.
-pub(super) struct Answers<F> {
+struct Answers<F> {
     distance: F,
     normal: V8<F>,
     /// The bits of the points that are candidates.
     found: u32,
-    /// The bits of those near or inside the surface that do not face it well, or are next to its edges.
+    /// The bits of those near or inside the surface that do not face it well.
     doubtful: u32,
 }
 
 impl<F: Lanes> Answers<F> {
-    /// Doubts some of what was found; puts what is known of crossings in the place of what the surface says.
+    /// Puts what is known of crossings in the place of what the surface says.
     #[inline(always)]
-    pub(super) fn amend(&mut self, doubted: u32, crossings: Option<&Crossings>) {
-        self.doubtful |= doubted & self.found;
-        if let Some(crossings) = crossings {
-            let known = F::Mask::from_bits(crossings.known);
-            self.distance = known.select(F::from_array(crossings.distance), self.distance);
-            self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
-            self.doubtful &= !crossings.known;
-        }
+    fn put(&mut self, crossings: &Crossings) {
+        let known = F::Mask::from_bits(crossings.known);
+        self.distance = known.select(F::from_array(crossings.distance), self.distance);
+        self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
+        self.doubtful &= !crossings.known;
     }
+}
+
+/// What is asked about eight points, and what the surface says to them at first.
+pub(super) struct Query<'a, F> {
+    /// Distances and gradients.
+    pub(super) told: (F, V8<F>),
+    /// The bits of the points that are meant.
+    pub(super) meant: u32,
+    /// The bits of those that are to be doubted.
+    pub(super) doubted: u32,
+    /// What is known better of crossings of edges.
+    pub(super) crossings: Option<&'a Crossings>,
 }
 
 /// Appends the points of the direction that are near the surface, or will be at the end of the step.
@@ -94,12 +101,10 @@ fn find_sharp_lanes<F: Lanes, S: LookUp>(
         let (leaf, meant) = samples.leaf(leaf as usize);
         let points = transformed::<F>(leaf.points.form(), &direction.axes, direction.origin);
         let limit = direction.margin + direction.blur_depth;
-        let Some(answer) = surface.look_up_near(points, limit) else { continue };
-        let answer = direction.sharpened(points, answer, meant);
+        let Some(told) = surface.look_up_near(points, meant, limit) else { continue };
         let outwards = transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO);
         let eight = Eight { points, outwards, facing_max: F::from_array(leaf.facing_max.to_array()) };
-        let there = direction.judge(&eight, answer, V8::zero(), meant);
-        direction.append(surface, &eight, there, blocks);
+        direction.find_eight(surface, &eight, &Query { told, meant, doubted: 0, crossings: None }, blocks);
     }
 }
 
@@ -135,22 +140,27 @@ fn push_bits(block: usize, mut bits: u32, list: &mut Vec<u32>) {
 }
 
 impl Direction<'_> {
-    /// Appends what was found at eight points; asks again where that is doubtful.
+    /// Appends those of eight points that are meant and near, crossings of edges as they say themselves.
     #[inline(always)]
-    pub(super) fn append<F: Lanes, S: LookUp>(
+    pub(super) fn find_eight<F: Lanes, S: LookUp>(
         &self,
         surface: &S,
         eight: &Eight<F>,
-        mut there: Answers<F>,
+        query: &Query<F>,
         blocks: &mut Vec<Block>,
     ) {
+        let answer = self.sharpened(eight.points, query.told, query.meant);
+        let mut there = self.judge(eight, answer, V8::zero(), query.meant);
+        there.doubtful |= query.doubted & there.found;
+        if let Some(crossings) = query.crossings {
+            there.put(crossings);
+        }
         if there.doubtful != 0 && self.inset > 0.0 {
             // Further inside their own surface the face that the points have come through is the nearest one even for
             // the corners of a box that stands exactly on another of the same size.
             let back = eight.outwards * F::splat(self.inset);
-            let (at, asked) = (eight.points - back, there.doubtful);
-            let answer = self.sharpened_inside(eight, at, surface.look_up(at), asked);
-            let mut inside = self.judge(eight, answer, back, asked);
+            let answer = self.answer_inside(surface, eight, back, there.doubtful);
+            let mut inside = self.judge(eight, answer, back, there.doubtful);
             // Better than an answer that is good enough is only one without doubt.
             inside.found &= !inside.doubtful | !there.found;
             there.found &= !inside.found;
@@ -163,13 +173,8 @@ impl Direction<'_> {
     /// What is to be made of the answers of the field to some of eight points, given `back` (metres) from them. The answers are carried
     /// to the points along the normals found.
     #[inline(always)]
-    pub(super) fn judge<F: Lanes>(
-        &self,
-        eight: &Eight<F>,
-        Answer { distance, gradient, beside }: Answer<F>,
-        back: V8<F>,
-        asked: u32,
-    ) -> Answers<F> {
+    fn judge<F: Lanes>(&self, eight: &Eight<F>, answer: Answer<F>, back: V8<F>, asked: u32) -> Answers<F> {
+        let Answer { distance, gradient, beside } = answer;
         let normal = normalized(gradient);
         let distance = distance + normal.dot(back);
         let closing = self.closing_at(eight.points, normal);
@@ -179,7 +184,8 @@ impl Direction<'_> {
             & (distance + closing).lt(F::splat(self.near))
             & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
         let well = facing.lt(F::splat(FACING_WELL)).bits();
-        let doubtful = (near & distance.lt(F::splat(BESIDE))).bits() & asked & (beside | !well);
+        let doubtful =
+            (near & distance.lt(F::splat(TOUCH_PART * self.near))).bits() & asked & (beside | !well);
         Answers { distance, normal, found: (near & found).bits() & asked, doubtful }
     }
 

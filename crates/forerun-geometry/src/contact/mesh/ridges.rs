@@ -12,11 +12,11 @@ use forerun_lanes::{LANES, Lanes, Portable, V8, dispatched};
 
 use super::candidates::{Block, Candidates};
 use super::directions::Direction;
-use super::look_up::Eight;
+use super::look_up::{Eight, Query};
 use super::sharp::Answer;
 use crate::Vec3;
 use crate::sdf::eight::{lane, of_vectors, transformed};
-use crate::sdf::primitive::Surface;
+use crate::sdf::primitive::{LookUp, Surface};
 use crate::sdf::ridges::EightRidges;
 use crate::sdf::samples::Spheres;
 
@@ -70,9 +70,7 @@ dispatched! {
 
 #[inline(always)]
 fn ask_lanes<F: Lanes>(direction: &Direction, points: &V8<Portable>, asked: u32, told: &mut Told) {
-    let points = points.form();
-    let answer = direction.surface.look_up_some::<F>(points, asked);
-    let Answer { distance, gradient, .. } = direction.sharpened(points, answer, asked);
+    let Answer { distance, gradient, .. } = direction.answer::<F>(points.form(), asked);
     *told = Told { distance: distance.to_array(), gradient: gradient.form() };
 }
 
@@ -88,11 +86,13 @@ fn append_lanes<F: Lanes>(direction: &Direction, points: &Points, blocks: &mut V
         outwards: transformed(points.ridges.normals.form(), &direction.axes, Vec3::ZERO),
         facing_max: F::from_array(points.ridges.facing_max.to_array()),
     };
-    let answer = direction.surface.look_up_some::<F>(eight.points, points.meant);
-    let answer = direction.sharpened(eight.points, answer, points.meant);
-    let mut there = direction.judge(&eight, answer, V8::zero(), points.meant);
-    there.amend(points.beside, points.crossings.as_ref());
-    direction.append(&direction.surface, &eight, there, blocks);
+    let query = Query {
+        told: direction.surface.look_up_some(eight.points, points.meant),
+        meant: points.meant,
+        doubted: points.beside,
+        crossings: points.crossings.as_ref(),
+    };
+    direction.find_eight(&direction.surface, &eight, &query, blocks);
 }
 
 /// What the surface says to eight points.

@@ -11,7 +11,7 @@ use crate::Vec3;
 use crate::sdf::blur::Blur;
 use crate::sdf::eight::{lane, of_vectors};
 use crate::sdf::nearest::Nearest;
-use crate::sdf::primitive::Surface;
+use crate::sdf::primitive::{LookUp, Surface};
 
 /// Unit vectors whose largest part is less than this are along no axis: off the sides of a box.
 const AXIS: f32 = 0.999_99;
@@ -37,15 +37,17 @@ struct Exact {
 }
 
 impl Direction<'_> {
-    /// What the surface says of eight points of the field's frame, better where it is blurred: good where they are
-    /// `asked` for and near.
+    /// Asks the surface about eight points of the field's frame: the answers are good where they are `asked` for and
+    /// near.
     #[inline(always)]
-    pub(super) fn sharpened<F: Lanes>(
-        &self,
-        points: V8<F>,
-        (distance, gradient): (F, V8<F>),
-        asked: u32,
-    ) -> Answer<F> {
+    pub(super) fn answer<F: Lanes>(&self, points: V8<F>, asked: u32) -> Answer<F> {
+        self.sharpened(points, self.surface.look_up_some(points, asked), asked)
+    }
+
+    /// What the surface `told`, made good beside sharp edges.
+    #[inline(always)]
+    pub(super) fn sharpened<F: Lanes>(&self, points: V8<F>, told: (F, V8<F>), asked: u32) -> Answer<F> {
+        let (distance, gradient) = told;
         let mut answer = Answer { distance, gradient, beside: 0 };
         if let Some(blur) = self.blur {
             let reach = self.reach(points, F::zero()) + F::splat(self.blur_depth);
@@ -61,16 +63,18 @@ impl Direction<'_> {
         answer
     }
 
-    /// The same for points inside the surface that they are of: next to an edge or corner the side is meant that faces
-    /// them best.
+    /// Asks about points that lie `back` inside the surface that they are of: next to an edge or corner the side is
+    /// meant that faces them best.
     #[inline(always)]
-    pub(super) fn sharpened_inside<F: Lanes>(
+    pub(super) fn answer_inside<F: Lanes, S: LookUp>(
         &self,
+        surface: &S,
         eight: &Eight<F>,
-        points: V8<F>,
-        (distance, gradient): (F, V8<F>),
+        back: V8<F>,
         asked: u32,
     ) -> Answer<F> {
+        let points = eight.points - back;
+        let (distance, gradient) = surface.look_up_some(points, asked);
         let answer = Answer { distance, gradient, beside: 0 };
         match self.blur {
             Some(blur) => answer.but_for(&self.facing(blur, [&points.form(), &eight.outwards.form()], asked)),
