@@ -15,7 +15,9 @@ fn start(scene: &str) -> World {
 }
 
 fn step(world: &mut World, frames: u32) {
-    (0..frames).for_each(|_| drop(world.step(&mut Unobserved)));
+    for _ in 0..frames {
+        world.step(&mut Unobserved);
+    }
 }
 
 #[test]
