@@ -150,10 +150,11 @@ pub(super) fn chairs(count: u32) -> Scene {
     let mut noise = Noise::new(41);
     for i in 0..count {
         let (layer, cell) = (i / 9, i % 9);
-        let x = 1.2 * centred(cell % 3, 3) + noise.about_zero(0.1);
-        let z = 1.2 * centred(cell / 3, 3) + noise.about_zero(0.1);
-        let place = Vec3::new(x, 1.0 + 1.2 * layer as f32, z);
-        scene.put(mesh("chair").of_density(600.0).at(place).turned(noise.rotation()));
+        let x = 1.45 * centred(cell % 3, 3) + noise.about_zero(0.1);
+        let z = 1.45 * centred(cell / 3, 3) + noise.about_zero(0.1);
+        let turned = noise.rotation();
+        let place = Vec3::new(x, 0.8 + 1.25 * layer as f32, z) - turned * (Vec3::Y * (0.5 * chair.height));
+        scene.put(mesh("chair").of_density(600.0).at(place).turned(turned));
     }
     scene
 }
