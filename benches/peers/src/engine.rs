@@ -66,12 +66,13 @@ impl Kind {
         Kind::Jolt,
     ];
 
-    /// Whether it is another engine of the list on scenes where no mesh moves.
+    /// Whether it differs from another of the list only where meshes move.
     pub(crate) fn is_for_meshes(self) -> bool {
         matches!(self, Kind::RapierFine | Kind::RapierTriangles | Kind::Box3dFine)
     }
 
-    /// How it cuts moving meshes; none where it takes them as they are.
+    /// How it has meshes cut; none where it takes them as they are.
+    #[cfg(feature = "engines")]
     pub(crate) fn fineness(self) -> Option<Fineness> {
         match self {
             Kind::Forerun | Kind::RapierTriangles => None,
@@ -95,6 +96,7 @@ impl Kind {
 }
 
 /// How finely meshes are cut.
+#[cfg(feature = "engines")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fineness {
     /// As parry's VHACD does it by default, and so Rapier's `convex_decomposition`.
@@ -120,7 +122,7 @@ pub(crate) struct Cutting {
     pub(crate) cpu_ms: f64,
 }
 
-/// Makes the stage what the engine takes: moving meshes are cut into hulls unless it takes them; these are kept in a folder, if one is
+/// Makes the stage what the engine takes: meshes that it does not take are cut into hulls; these are kept in a folder, if one is
 /// given. Fails with what the engine cannot do.
 #[cfg(feature = "engines")]
 pub(crate) fn prepare(kind: Kind, stage: &mut Stage, folder: Option<&Path>) -> Result<Cutting, String> {
@@ -131,8 +133,7 @@ pub(crate) fn prepare(kind: Kind, stage: &mut Stage, folder: Option<&Path>) -> R
     if stage.actors.iter().any(pushed) {
         return Err("constant forces and torques are not passed on".to_owned());
     }
-    kind.fineness()
-        .map_or(Ok(Cutting::default()), |fineness| crate::parts::cut_moving_meshes(stage, fineness, folder))
+    crate::parts::cut_meshes(kind, stage, folder)
 }
 
 /// Builds the world of an engine. Fails with what the engine cannot do.

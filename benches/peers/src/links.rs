@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
+use forerun::scene::mesh::MeshSource;
 use forerun::scene::{BodyEntry, MeshEntry, ShapeEntry};
 use forerun::{BodyKind, Pose, Quat, Scene, Shape, Vec3};
 use serde::{Deserialize, Serialize};
@@ -174,9 +175,18 @@ impl Links {
 
 impl Ring {
     fn of(body: usize, entry: &MeshEntry) -> Option<Ring> {
-        let torus = entry.torus.as_ref()?;
-        let (radius, tube_radius) = (torus.radius * entry.scale, torus.tube_radius * entry.scale);
-        Some(Ring { body, radius, half_length: 0.0, tube_radius })
+        let (radius, half_length, tube_radius) = match &entry.source {
+            MeshSource::Torus(torus) => (torus.radius, 0.0, torus.tube_radius),
+            MeshSource::Link(link) => (link.radius, 0.5 * link.straight, link.tube_radius),
+            _ => return None,
+        };
+        let scale = entry.scale;
+        Some(Ring {
+            body,
+            radius: radius * scale,
+            half_length: half_length * scale,
+            tube_radius: tube_radius * scale,
+        })
     }
 
     /// From the middle to the farthest point of the middle line. Metres.

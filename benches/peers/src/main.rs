@@ -19,6 +19,7 @@ mod nut;
 mod overlap;
 #[cfg(feature = "engines")]
 mod parts;
+mod places;
 mod processes;
 mod quality;
 #[cfg(feature = "engines")]
@@ -67,7 +68,7 @@ struct Args {
     /// Frames to step [default: 300, of a set's scenes their own]
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     frames: Option<u32>,
-    /// Seconds that the steps of an engine on a scene of `meshes` may take in all
+    /// Seconds of CPU time that the steps of an engine on a scene of `meshes` may take in all
     #[arg(long, default_value_t = 10.0, value_parser = seconds)]
     limit: f64,
     /// Print the result as JSON and nothing else

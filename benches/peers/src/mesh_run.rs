@@ -16,6 +16,7 @@ use crate::links::{LinkCount, Links};
 use crate::measure::{Task, Times, on_its_threads, open};
 use crate::nut::{Nut, NutCount};
 use crate::overlap::TrueBodies;
+use crate::places::{self, PlaceCount};
 use crate::quality::{Meter, Own};
 use crate::shapes::{self, Fit};
 use crate::stage::Stage;
@@ -30,7 +31,7 @@ pub(crate) enum Extent {
     All,
     /// Times only: the rest is the same every time.
     Times,
-    /// Nothing but the heap that the world takes with boxes in the place of moving meshes.
+    /// Nothing but the heap that the world takes with boxes in the place of meshes.
     HeapOfBoxes,
 }
 
@@ -39,7 +40,7 @@ pub(crate) enum Extent {
 pub(crate) struct MeshAnswer {
     /// CPU time for making the shapes and the world from triangles. Milliseconds.
     pub(crate) setup_ms: f64,
-    /// Different meshes that move.
+    /// Different meshes.
     pub(crate) meshes: usize,
     /// What the engine's shapes are, against the meshes; none when not asked for.
     pub(crate) fit: Option<Fit>,
@@ -68,12 +69,13 @@ pub(crate) struct Worth {
     pub(crate) links: Option<LinkCount>,
     /// Of a scene with a nut on a bolt.
     pub(crate) nut: Option<NutCount>,
+    pub(crate) places: PlaceCount,
 }
 
 /// With what it is done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Means<'a> {
-    /// How long the steps may take in all.
+    /// CPU time that the steps may take in all.
     pub(crate) limit: Duration,
     /// Where the hulls of meshes are kept from process to process.
     pub(crate) folder: Option<&'a Path>,
@@ -105,6 +107,7 @@ fn make(task: &Task, extent: Extent, folder: Option<&Path>) -> Result<Made, Stri
     let heap_before = heap::in_use();
     let mut stage = Stage::of(&open(&task.scene)?)?;
     let meshes = shapes::moving(&stage);
+    let count = shapes::different(&stage);
     let (mut setup_ms, mut fit) = (0.0, None);
     if extent == Extent::HeapOfBoxes {
         put_boxes(&mut stage)?;
@@ -117,17 +120,16 @@ fn make(task: &Task, extent: Extent, folder: Option<&Path>) -> Result<Made, Stri
     let start = ProcessTime::now();
     let world = engine::build(task.kind, &stage, task.threads)?;
     setup_ms += 1000.0 * start.elapsed().as_secs_f64();
-    let count = meshes.len();
     // What is left is the engine's own, and what it shares of ours.
     drop((stage, meshes));
     let heap_bytes = heap::in_use().zip(heap_before).map(|(now, before)| now.saturating_sub(before));
     Ok(Made { world, setup_ms, meshes: count, fit, heap_bytes })
 }
 
-/// A small box in the place of every moving mesh.
+/// A small box in the place of every mesh.
 fn put_boxes(stage: &mut Stage) -> Result<(), String> {
     let small = Shape::cuboid(Vec3::splat(0.01)).map_err(|error| error.to_string())?;
-    for actor in stage.actors.iter_mut().filter(|actor| !actor.is_fixed()) {
+    for actor in &mut stage.actors {
         if matches!(actor.def.shape, Shape::Mesh(_)) {
             actor.def.shape = small.clone();
         }
@@ -138,11 +140,11 @@ fn put_boxes(stage: &mut Stage) -> Result<(), String> {
 /// Steps and takes the time of each step; the motions after each.
 fn step(world: &mut dyn Engine, frames: u32, limit: Duration) -> Result<(Times, Vec<Vec<Motion>>), String> {
     let clock = Clock::system();
-    let start = clock.now();
+    let start = ProcessTime::now();
     let count = frames as usize;
     let (mut cpu_ms, mut wall_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut motions = Vec::with_capacity(count);
-    while cpu_ms.len() < count && clock.now() - start < limit {
+    while cpu_ms.len() < count && start.elapsed() < limit {
         let (wall_start, cpu_start) = (clock.now(), ProcessTime::now());
         world.step()?;
         let (cpu, wall) = (cpu_start.elapsed(), clock.now() - wall_start);
@@ -183,5 +185,6 @@ fn worth(scene: &Scene, motions: &[Vec<Motion>]) -> Result<Worth, String> {
         not_finite: at_end.not_finite,
         links: links.finish(),
         nut: nut.map(|nut| nut.finish()),
+        places: motions.last().map(|end| places::at_end(scene, &stage, end)).unwrap_or_default(),
     })
 }

@@ -21,7 +21,7 @@ pub(crate) struct Plan {
     pub(crate) scenes: Vec<SceneAndFrames>,
     pub(crate) engines: Vec<Kind>,
     pub(crate) rounds: u32,
-    /// How long the steps of an engine on a scene may take in all.
+    /// CPU time that the steps of an engine on a scene may take in all.
     pub(crate) limit: Duration,
 }
 
@@ -103,8 +103,8 @@ pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
 }
 
 fn measure(programs: &Programs, task: &Task, plan: &Plan, folder: &Path) -> Result<Measured, String> {
-    // Steps have a limit of their own; setting up and looking need some time too.
-    let patience = 2 * plan.limit + Duration::from_secs(60);
+    // Steps have a limit of their own, but of CPU time; setting up and looking need some time too.
+    let patience = 5 * plan.limit + Duration::from_secs(90);
     let ask = |question: Question| -> Result<MeshAnswer, String> {
         let folder = folder.to_string_lossy().into_owned();
         let words =
@@ -195,6 +195,13 @@ fn outcome(worth: &Worth) -> String {
     if let Some(nut) = worth.nut {
         words.push(format!("{:.2} turns, {:.1} mm down", nut.turns, 1000.0 * nut.down_m));
     }
+    let [at_start, still] = worth.places.hanging;
+    if at_start > 0 {
+        words.push(format!("{still} of {at_start} hang"));
+    }
+    if let Some([all, inside]) = worth.places.in_bowl {
+        words.push(format!("{inside} of {all} in the bowl"));
+    }
     words.push(format!("{} lost", worth.lost));
     if worth.not_finite > 0 {
         words.push(format!("{} not finite", worth.not_finite));
@@ -222,6 +229,7 @@ fn of_links(links: &LinkCount) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::places::PlaceCount;
 
     fn row(kind: Kind, mean_ms: f64, frames_done: u32) -> Row {
         let times = vec![9.0, mean_ms, mean_ms];
@@ -233,6 +241,7 @@ mod tests {
             not_finite: 0,
             links: Some(LinkCount { rings: 9, linked: [8, 7], links_changed: 1, ..LinkCount::default() }),
             nut: None,
+            places: PlaceCount { hanging: [4, 3], in_bowl: None },
         };
         let measured = Measured {
             setup_ms: 12.0,
@@ -258,7 +267,11 @@ mod tests {
         assert!(
             lines[0].contains("| 12 | 11 (700) | 2 | 10.0 | 98 % |") && lines[0].contains("| 20.0 / 4.0 |")
         );
-        assert!(lines[0].ends_with("| 7 of 8 links hold, links changed 1 times, 1 lost |"), "{}", lines[0]);
+        assert!(
+            lines[0].ends_with("| 7 of 8 links hold, links changed 1 times, 3 of 4 hang, 1 lost |"),
+            "{}",
+            lines[0]
+        );
         assert!(lines[2].contains("stopped after 2 frames") && lines[3].contains("cannot: it fell over"));
         let columns = |line: &str| line.matches('|').count();
         assert!(text.lines().all(|line| columns(line) == columns(lines[0])), "{text}");

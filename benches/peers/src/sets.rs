@@ -33,8 +33,14 @@ const SCENES: [Entry; 9] = [
 ];
 
 /// What meshes that move are used for.
-const MESH_SCENES: [Entry; 3] =
-    [entry("tori", 300, Some(0.6)), entry("rings:100", 600, None), entry("chain", 300, None)];
+const MESH_SCENES: [Entry; 6] = [
+    entry("tori", 300, Some(0.6)),
+    entry("rings:100", 600, None),
+    entry("chain", 300, None),
+    entry("mugs", 300, None),
+    entry("bowl", 300, None),
+    entry("chairs", 300, None),
+];
 
 /// The set of a name.
 pub(crate) fn named(name: &str) -> Option<&'static [Entry]> {

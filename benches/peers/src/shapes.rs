@@ -40,6 +40,18 @@ pub(crate) fn moving(stage: &Stage) -> Vec<(usize, Arc<Mesh>)> {
     meshes
 }
 
+/// How many different meshes there are, fixed ones too.
+pub(crate) fn different(stage: &Stage) -> usize {
+    let mut meshes: Vec<*const Mesh> = (stage.actors.iter())
+        .filter_map(
+            |actor| if let Shape::Mesh(mesh) = &actor.def.shape { Some(Arc::as_ptr(mesh)) } else { None },
+        )
+        .collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    meshes.len()
+}
+
 /// Makes the stage what the engine takes, and says how long making the shapes from triangles took: of ours the fields once more, of others the cutting.
 /// Pieces are kept in a folder, if one is given. CPU milliseconds.
 pub(crate) fn prepare(

@@ -5,6 +5,7 @@ mod gauge;
 #[cfg(test)]
 mod known_misses;
 mod lab;
+mod linkage;
 mod timelines;
 
 use std::fmt;

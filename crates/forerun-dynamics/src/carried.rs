@@ -130,3 +130,58 @@ impl<'a> Prospects<'a> {
         (MARGIN_PART * self.contact_margin_m).max(way).min(THICKNESS_PART * thickness)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use forerun_geometry::shape::{Shape, Sphere};
+
+    use super::*;
+    use crate::narrow_phase::find_contacts;
+    use crate::{Body, BodyDef, BodyId};
+
+    /// Level ground, and a ball of 1 m that touches it.
+    fn bodies() -> [(Body, BodyState); 2] {
+        let ball = BodyDef::new(Shape::Sphere(Sphere { radius: 1.0 })).at(Vec3::Y);
+        [BodyDef::fixed(Shape::half_space()), ball].map(|def| Body::new(&def).unwrap())
+    }
+
+    fn members(bodies: &[(Body, BodyState); 2]) -> Vec<Member<'_>> {
+        let member = |(i, (body, state)): (usize, &(Body, BodyState))| Member {
+            id: BodyId(i as u32),
+            body,
+            state: *state,
+        };
+        bodies.iter().enumerate().map(member).collect()
+    }
+
+    /// The contact of the two after the ball has moved, with its separation made 1 mm larger than it was found; and looked for again, or not.
+    fn after_move(shift: Vec3) -> Contact {
+        let bodies = bodies();
+        let mut members = members(&bodies);
+        let environment = Environment::default();
+        let mut contacts = find_contacts(&members, &[(0, 1)], &environment);
+        contacts[0].manifold.points[0].separation += 0.001;
+        let mut carried = Carried::new(vec![(0, 1)], contacts, &members, &environment);
+        let mut next: Vec<BodyState> = members.iter().map(|member| member.state).collect();
+        next[1].position += shift;
+        carried.follow(&members, &next);
+        members[1].state = next[1];
+        carried.look(&members, &environment);
+        assert_eq!(carried.contacts.len(), 1);
+        carried.contacts[0]
+    }
+
+    #[test]
+    fn separations_follow_the_bodies() {
+        let point = after_move(Vec3::new(0.004, 0.002, 0.0)).manifold.points[0];
+        assert!((point.separation - 0.003).abs() < 1e-6, "{point:?}");
+        assert!((point.position - Vec3::new(0.002, 0.001, 0.0)).length() < 1e-6, "{point:?}");
+    }
+
+    #[test]
+    fn who_has_moved_far_is_looked_at_again() {
+        let point = after_move(Vec3::new(0.5, 0.002, 0.0)).manifold.points[0];
+        assert!((point.separation - 0.002).abs() < 1e-6, "{point:?}");
+        assert!((point.position - Vec3::new(0.5, 0.001, 0.0)).length() < 1e-3, "{point:?}");
+    }
+}

@@ -195,6 +195,21 @@ fn a_fast_body_is_seen_in_time() {
 }
 
 #[test]
+fn of_two_that_fall_together_one_may_be_stopped() {
+    let torus = torus();
+    let (lower, upper) = (at(&torus, Vec3::ZERO), at(&torus, Vec3::Y * 0.5));
+    let meet = |motion: Motion| {
+        let mut out = Vec::new();
+        let falling = [lower, upper].map(|placed| Placed { motion, ..placed });
+        contact_manifolds(&falling[0], &falling[1], 0.36, &mut out);
+        out
+    };
+    assert!(meet(Motion::default()).is_empty());
+    let found = meet(Motion { linear: Vec3::Y * -0.3, ..Motion::default() });
+    assert!((smallest_separation(&found) - 0.1).abs() < 0.02, "{}", smallest_separation(&found));
+}
+
+#[test]
 fn swapping_the_bodies_mirrors_the_manifolds() {
     let torus = torus();
     let mut random = Random(7);
@@ -465,9 +480,102 @@ fn wedges_touch_at_the_corners_of_their_joint() {
                 .iter()
                 .min_by(|a, b| a.position.distance(corner).total_cmp(&b.position.distance(corner)));
             let point = point.expect("has points");
-            assert!(point.position.distance(corner) < 0.01, "none at {corner}, gap {gap}");
+            assert!(point.position.distance(corner) < 0.01, "none at {corner}, gap {gap}: {points:?}");
             assert!((point.separation - gap).abs() < 5e-4, "{} at {corner}, gap {gap}", point.separation);
             assert!(point.normal.dot(normal) > 0.999, "{} instead of {normal}", point.normal);
+        }
+    }
+}
+
+/// The area that the points span on the ground: that of their convex hull, corner by corner (Jarvis' march).
+fn spanned(points: &[ContactPoint]) -> f32 {
+    let ground: Vec<[f32; 2]> = points.iter().map(|p| [p.position.x, p.position.z]).collect();
+    let cross = |a: [f32; 2], b: [f32; 2]| a[0] * b[1] - a[1] * b[0];
+    let way = |a: [f32; 2], b: [f32; 2]| [b[0] - a[0], b[1] - a[1]];
+    let Some(first) = ground.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])))
+    else {
+        return 0.0;
+    };
+    let (mut area, mut corner) = (0.0, first);
+    for _ in 0..ground.len() {
+        let mut next = first;
+        for p in &ground {
+            let (side, far) = (cross(way(corner, next), way(corner, *p)), |q| way(corner, q).map(|c| c * c));
+            let farther = far(*p)[0] + far(*p)[1] > far(next)[0] + far(next)[1];
+            if next == corner || side < -1e-6 || (side < 1e-6 && farther) {
+                next = *p;
+            }
+        }
+        area += 0.5 * cross(corner, next);
+        corner = next;
+        if corner == first {
+            break;
+        }
+    }
+    area
+}
+
+#[test]
+fn a_box_lying_across_another_is_held_by_all_that_they_share() {
+    let cube = shape(meshes::cuboid(Vec3::splat(0.5)));
+    let cuboid = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) });
+    let hull = Shape::Hull(Arc::new(Hull::new(&meshes::cuboid(Vec3::splat(0.5)).0).expect("a box")));
+    // An octagon: of a square of 1 m four corners are cut off at 0.5 m from the middle.
+    let octagon = 1.0 - 4.0 * (0.5_f32.sqrt() - 0.5).powi(2);
+    for (name, lower, upper) in
+        [("mesh", &cube, &cube), ("cuboid", &cuboid, &cube), ("box", &cube, &cuboid), ("hull", &cube, &hull)]
+    {
+        for (turn, aside, expected) in [
+            (std::f32::consts::FRAC_PI_4, Vec3::ZERO, octagon),
+            (0.0, Vec3::new(0.3, 0.0, 0.4), 0.7 * 0.6),
+            (0.0, Vec3::new(0.3, 0.0, 0.0), 0.7),
+        ] {
+            for depth in [-0.002, 0.0, 0.004] {
+                let mut above = at(upper, aside + Vec3::Y * (1.0 - depth));
+                above.pose.rotation = Quat::from_axis_angle(Vec3::Y, turn);
+                let points = all_points(&contact(&at(lower, Vec3::ZERO), &above));
+                for p in &points {
+                    assert!(p.normal.y > 0.999, "{name} turned by {turn}, {depth} deep: {p:?}");
+                    assert!(
+                        (p.separation + depth).abs() < 1e-3,
+                        "{name} turned by {turn}, {depth} deep: {p:?}"
+                    );
+                }
+                let area = spanned(&points);
+                assert!(
+                    (0.9..1.01).contains(&(area / expected)),
+                    "{name} turned by {turn}, {depth} deep: {area} m² of {expected}: {points:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_thin_wedge_does_not_go_between_the_points_of_an_edge() {
+    // Its edge across that of a long block, between the corners, which are two metres apart.
+    let block = shape(meshes::cuboid(Vec3::new(1.0, 1.0, 1.0)));
+    for half_width in [0.01, 0.1] {
+        let corners =
+            |z: f32| [Vec3::new(0.0, 0.0, z), Vec3::new(1.0, half_width, z), Vec3::new(1.0, -half_width, z)];
+        let corners: Vec<Vec3> = [-1.5, 1.5].into_iter().flat_map(corners).collect();
+        let hull = Hull::new(&corners).expect("a wedge");
+        let triangles: Vec<Vec3> = hull.triangles().flatten().collect();
+        let count = triangles.len() as u32 / 3;
+        let wedge = shape((triangles, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()));
+        for depth in [-0.003, 0.003, 0.01] {
+            // It comes in over the vertical edge at (1, 1), its own edge in the horizontal plane, and halves the angle.
+            let mut across =
+                at(&wedge, Vec3::new(1.0, 0.237, 1.0) - Vec3::new(1.0, 0.0, 1.0).normalize() * depth);
+            across.pose.rotation = Quat::from_axis_angle(Vec3::Y, -std::f32::consts::FRAC_PI_4);
+            let found = contact(&at(&block, Vec3::ZERO), &across);
+            let out = Vec3::new(1.0, 0.0, 1.0).normalize();
+            assert!(
+                (smallest_separation(&found) + depth).abs() < 0.003,
+                "{half_width} wide, {depth} deep: {}",
+                smallest_separation(&found)
+            );
+            assert!(found.iter().any(|m| m.normal.dot(out) > 0.7), "{found:?}");
         }
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use forerun::geometry::mesh_file::{
     LIKELY_MILLIMETRES, MeshFileOptions, TriangleList, UpAxis, load_triangles,
 };
+use forerun::geometry::sdf::Field;
 use forerun::geometry::shape::{Enclosure, Inside, Mesh, MeshOptions};
 use forerun::scene::MeshBaking;
 use forerun::{Aabb, Clock, Pose, Shape, Vec3};
@@ -67,6 +68,26 @@ struct Solid {
 struct FieldReport {
     cell_m: f32,
     bytes: usize,
+    /// How far from 0 the field is on the triangles: at corners, middles of edges and of faces.
+    error_mean_m: f32,
+    error_max_m: f32,
+}
+
+impl FieldReport {
+    fn of(field: &Field, mesh: &Mesh) -> FieldReport {
+        let (mut sum, mut error_max_m) = (0.0, 0.0_f32);
+        for t in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(t);
+            let middles = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3.0];
+            for point in [a, b, c].into_iter().chain(middles) {
+                let error = field.distance_and_gradient(point).0.abs();
+                sum += f64::from(error);
+                error_max_m = error_max_m.max(error);
+            }
+        }
+        let error_mean_m = (sum / (7 * mesh.triangles.len()) as f64) as f32;
+        FieldReport { cell_m: field.cell(), bytes: field.bytes(), error_mean_m, error_max_m }
+    }
 }
 
 /// `forerun mesh`.
@@ -172,7 +193,7 @@ impl Made {
             min_m: min.to_array(),
             max_m: max.to_array(),
             solid,
-            field: field.map(|field| FieldReport { cell_m: field.cell(), bytes: field.bytes() }),
+            field: field.map(|field| FieldReport::of(field, mesh)),
             samples: collider.samples.count(),
             bytes: collider.bytes(),
             bake_ms: self.bake_ms,
@@ -271,10 +292,10 @@ fn print_report(report: &MeshReport) -> Result<(), Failure> {
         line("half thickness", format!("{:.5} m", solid.half_thickness_m))?;
     }
     if let Some(field) = &report.field {
-        line(
-            "field",
-            format!("{:.1} KiB, cells of {:.3} mm", field.bytes as f64 / 1024.0, 1000.0 * field.cell_m),
-        )?;
+        let kib = field.bytes as f64 / 1024.0;
+        line("field", format!("{kib:.1} KiB, cells of {:.3} mm", 1000.0 * field.cell_m))?;
+        let [mean, max] = [field.error_mean_m, field.error_max_m].map(|error| 1000.0 * error);
+        line("field error", format!("on the triangles {mean:.4} mm in the mean, {max:.4} mm at most"))?;
     }
     line("samples", report.samples.to_string())?;
     line("memory", format!("{:.1} KiB for contact in all", report.bytes as f64 / 1024.0))?;
@@ -297,7 +318,7 @@ fn draw_views(mesh: &Arc<Mesh>) -> Canvas {
     };
     let mut canvas = Canvas::new(2 * VIEW, VIEW);
     for (left, from) in [(0, Vec3::new(0.6, 0.5, 1.0)), (VIEW, Vec3::new(-0.8, 0.7, -1.0))] {
-        let camera = Camera::fitting(&seen, from, 1.0);
+        let camera = Camera::fitting(mesh.vertices.iter().copied(), from, 1.0);
         let view = View { camera, items: std::slice::from_ref(&item), grounds: &[ground], seen };
         canvas.paste(&draw(&view, VIEW, VIEW), left, 0);
     }

@@ -21,7 +21,7 @@ use crate::results::make_folder;
 /// Where the camera is, seen from the bodies.
 const FROM: Vec3 = Vec3::new(0.55, 0.42, 1.0);
 /// Of so many bodies one on each side does not count for what must be in view: a stray one would make all others small.
-const STRAY: usize = 50;
+const STRAY: usize = 100;
 
 /// `forerun render`.
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
@@ -46,12 +46,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     };
     let mut studio = Studio { size: args.size, surfaces: BTreeMap::new() };
     if let Some(path) = &args.output {
-        studio.draw(at_end, &box_around([at_end.as_slice()]), path)?;
+        studio.draw(at_end, &Scenery::of([at_end.as_slice()]), path)?;
     }
     if let Some(folder) = &args.film {
         make_folder(folder)?;
         // One place for the whole film: the camera does not move.
-        let seen = box_around(in_film.iter().map(Vec::as_slice));
+        let seen = Scenery::of(in_film.iter().map(Vec::as_slice));
         let bar = progress::bar(in_film.len() as u64, "drawing");
         for (i, shown) in in_film.iter().enumerate() {
             studio.draw(shown, &seen, &folder.join(format!("{i:05}.png")))?;
@@ -105,30 +105,56 @@ fn advance_to(timeline: &mut Timeline, frame: u64, done: &dyn Fn(u64)) {
     }
 }
 
-/// The box around what moves; where nothing does, around what has an end.
-fn box_around<'a>(pictures: impl IntoIterator<Item = &'a [Shown]>) -> Aabb {
-    let (mut moving, mut fixed) = (Vec::new(), Vec::new());
-    for shown in pictures.into_iter().flatten() {
-        let bounds = shown.body.shape.aabb(&shown.pose);
-        if bounds.min.is_finite() && bounds.max.is_finite() {
-            if shown.body.is_dynamic() { moving.push(bounds) } else { fixed.push(bounds) }
+/// What has to be in view.
+struct Scenery {
+    /// Around each of the things. Not empty.
+    boxes: Vec<Aabb>,
+    /// Around all of them.
+    whole: Aabb,
+}
+
+impl Scenery {
+    /// What moves, less a few that strayed; where nothing does, what has an end.
+    fn of<'a>(pictures: impl IntoIterator<Item = &'a [Shown]>) -> Scenery {
+        let (mut moving, mut fixed) = (Vec::new(), Vec::new());
+        for shown in pictures.into_iter().flatten() {
+            let bounds = shown.body.shape.aabb(&shown.pose);
+            if bounds.min.is_finite() && bounds.max.is_finite() {
+                if shown.body.is_dynamic() { moving.push(bounds) } else { fixed.push(bounds) }
+            }
         }
+        let mut boxes = if moving.is_empty() { fixed } else { moving };
+        if boxes.is_empty() {
+            boxes.push(Aabb { min: Vec3::new(-1.0, 0.0, -1.0), max: Vec3::ONE });
+        }
+        let strays = boxes.len() / STRAY;
+        let (mut min, mut max) = (Vec3::ZERO, Vec3::ZERO);
+        for axis in 0..3 {
+            let mut lows: Vec<f32> = boxes.iter().map(|aabb| aabb.min[axis]).collect();
+            let mut highs: Vec<f32> = boxes.iter().map(|aabb| aabb.max[axis]).collect();
+            lows.sort_by(f32::total_cmp);
+            highs.sort_by(f32::total_cmp);
+            min[axis] = lows[strays];
+            max[axis] = highs[highs.len() - 1 - strays];
+        }
+        let is_stray = |aabb: &Aabb| aabb.min.cmplt(min).any() || aabb.max.cmpgt(max).any();
+        let whole = Aabb { min, max };
+        boxes.retain(|aabb| !is_stray(aabb));
+        // Where every box is the farthest in some direction.
+        if boxes.is_empty() {
+            boxes.push(whole);
+        }
+        Scenery { boxes, whole }
     }
-    let boxes = if moving.is_empty() { fixed } else { moving };
-    if boxes.is_empty() {
-        return Aabb { min: Vec3::new(-1.0, 0.0, -1.0), max: Vec3::ONE };
+
+    fn corners(&self) -> impl Iterator<Item = Vec3> {
+        self.boxes.iter().flat_map(|Aabb { min, max }| {
+            (0..8).map(move |k| {
+                let pick = |axis: usize| if k >> axis & 1 == 0 { min[axis] } else { max[axis] };
+                Vec3::new(pick(0), pick(1), pick(2))
+            })
+        })
     }
-    let strays = boxes.len() / STRAY;
-    let (mut min, mut max) = (Vec3::ZERO, Vec3::ZERO);
-    for axis in 0..3 {
-        let mut lows: Vec<f32> = boxes.iter().map(|aabb| aabb.min[axis]).collect();
-        let mut highs: Vec<f32> = boxes.iter().map(|aabb| aabb.max[axis]).collect();
-        lows.sort_by(f32::total_cmp);
-        highs.sort_by(f32::total_cmp);
-        min[axis] = lows[strays];
-        max[axis] = highs[highs.len() - 1 - strays];
-    }
-    Aabb { min, max }
 }
 
 /// What tells shapes apart that do not look the same: where a shared one is in memory, or a kind and its numbers.
@@ -141,17 +167,18 @@ struct Studio {
 }
 
 impl Studio {
-    fn draw(&mut self, shown: &[Shown], seen: &Aabb, path: &Path) -> Result<(), Failure> {
+    fn draw(&mut self, shown: &[Shown], seen: &Scenery, path: &Path) -> Result<(), Failure> {
         let [width, height] = self.size;
-        let square = square_for((seen.max - seen.min).max_element());
+        let whole = seen.whole;
+        let square = square_for((whole.max - whole.min).max_element());
         let grounds: Vec<Ground> = shown
             .iter()
             .filter(|shown| matches!(shown.body.shape, Shape::HalfSpace))
             .map(|shown| Ground { pose: shown.pose, square })
             .collect();
         let items: Vec<Item> = shown.iter().map(|shown| self.item(shown)).collect();
-        let camera = Camera::fitting(seen, FROM, width as f32 / height as f32);
-        draw(&View { camera, items: &items, grounds: &grounds, seen: *seen }, width, height).write(path)
+        let camera = Camera::fitting(seen.corners(), FROM, width as f32 / height as f32);
+        draw(&View { camera, items: &items, grounds: &grounds, seen: whole }, width, height).write(path)
     }
 
     fn item(&mut self, shown: &Shown) -> Item {

@@ -189,7 +189,9 @@ mod tests {
             pose: Pose::from_position(Vec3::Y),
             colour: Vec3::new(0.9, 0.1, 0.1),
         };
-        let camera = Camera::fitting(&seen, Vec3::new(0.2, 0.5, 1.0), 1.0);
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let points = corners.iter().flat_map(|[x, z]| [0.0, 2.0].map(|y| Vec3::new(*x, y, *z)));
+        let camera = Camera::fitting(points, Vec3::new(0.2, 0.5, 1.0), 1.0);
         let view =
             View { camera, items: &[ball], grounds: &[Ground { pose: Pose::IDENTITY, square: 1.0 }], seen };
         let canvas = draw(&view, 100, 100);

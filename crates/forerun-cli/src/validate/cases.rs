@@ -18,6 +18,7 @@ mod newton_chain;
 mod off_centre_impact;
 mod plank;
 mod rattleback;
+mod rings;
 mod rolling_down;
 mod rolling_plate;
 mod sampling;
@@ -28,6 +29,7 @@ mod timeline_cost;
 mod timeline_cutoff;
 mod timeline_memory;
 mod timeline_scrub;
+mod tori;
 mod towers;
 mod turntable;
 
@@ -55,7 +57,12 @@ pub(crate) const CASES: &[Case] = &[
     short("capstone", capstone::run),
     short("plank", plank::run),
     short("degenerate", degenerate::run),
+    short("rings", rings::run),
+    short("tori", tori::run),
     long("kapla_long", kapla::run_long),
+    long("rings_500", rings::run_500),
+    long("rings_1000", rings::run_1000),
+    long("tori_long", tori::run_long),
     short("sampling", sampling::run),
     short("timeline_cutoff", timeline_cutoff::run),
     short("timeline_containment", timeline_containment::run),

@@ -5,6 +5,7 @@
 use forerun::Scene;
 use forerun::dynamics::{Body, BodyDef, BodyState, Environment, StepSettings, Unobserved, World};
 use forerun::geometry::{Pose, Quat, Shape, Vec3};
+use forerun::timeline::check::Random;
 
 /// Standard gravity of the older papers. m/s²
 pub(crate) const GRAVITY_98: Vec3 = Vec3::new(0.0, -9.8, 0.0);
@@ -46,6 +47,13 @@ pub(crate) fn watch(world: &mut World, seconds: f64, mut visit: impl FnMut(f64, 
         world.step(&mut Unobserved);
         visit(f64::from(frame) * dt, world.states());
     }
+}
+
+/// Some rotation; not all are equally likely.
+pub(crate) fn any_rotation(random: &mut Random) -> Quat {
+    let rotation = Quat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed());
+    // Close to nothing there is none.
+    if rotation.length() > 0.1 { rotation.normalize() } else { Quat::IDENTITY }
 }
 
 /// A plane through the origin that falls towards +x.

@@ -304,37 +304,3 @@ mod tests {
         assert!((pole.distance([0.0, 10.3, 0.4]) - 0.3_f64.hypot(0.3)).abs() < 1e-12);
     }
 }
-impl Linkage {
-    pub(crate) fn deepest(&self) -> (f64, (usize, usize)) {
-        let Torus { radius, tube_radius } = self.torus;
-        let reach = 2.0 * (radius + tube_radius);
-        let mut best = (0.0, (0, 0));
-        let mut put = |o: f64, a: usize, b: usize| {
-            if o > best.0 {
-                best = (o, (a, b))
-            }
-        };
-        for (i, a) in self.circles.iter().enumerate() {
-            let tilt = a.axes[2][1];
-            put(tube_radius + radius * (1.0 - tilt * tilt).max(0.0).sqrt() - a.centre[1], self.rings[i].0, 0);
-            for (j, b) in self.circles[..i].iter().enumerate() {
-                let apart = minus(a.centre, b.centre);
-                if dot(apart, apart) < reach * reach {
-                    put(
-                        2.0 * tube_radius - a.nearest(|point| b.distance(point)),
-                        self.rings[i].0,
-                        self.rings[j].0,
-                    );
-                }
-            }
-            for (k, pole) in self.poles.iter().enumerate() {
-                let apart = minus(a.centre, pole.centre);
-                let near = radius + tube_radius + pole.radius;
-                if apart[0] * apart[0] + apart[2] * apart[2] < near * near {
-                    put(tube_radius - a.nearest(|point| pole.distance(point)), self.rings[i].0, 1 + k);
-                }
-            }
-        }
-        best
-    }
-}

@@ -14,6 +14,7 @@ mod directions;
 mod look_up;
 mod points;
 mod reduce;
+mod ridges;
 mod sharp;
 mod smooth;
 
@@ -51,6 +52,7 @@ pub(super) fn mesh_manifolds(
     candidates.clear();
     for direction in directions.iter().flatten() {
         look_up::find(direction, candidates);
+        ridges::find(direction, candidates);
     }
     reduce::reduce(candidates, &directions, reduction, out);
 }

@@ -8,6 +8,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Field;
+use super::bake_blocks::bake_blocks;
+use super::blocks::{BLOCK, NODES};
 use super::mend::Mended;
 use super::nearest::{Nearest, Skin, nearest};
 use super::winding::Winding;
@@ -20,8 +22,12 @@ const CELLS_PER_HALF_THICKNESS: f32 = 4.0;
 const PADDING: usize = 2;
 /// Largest grid: 2 MB at two bytes a node. Meshes that are large and thin get larger cells instead.
 const NODES_MAX: usize = 1 << 20;
-/// Cells along the side of a block that is either computed node by node or, far from the surface, interpolated.
-const BLOCK: usize = 4;
+/// Larger grids are better made of blocks, if these are fewer.
+const DENSE_MAX: usize = 1 << 17;
+/// The finest cells of blocks that are tried, as a part of those of the dense grid that memory allows.
+const FINEST: f32 = 0.2;
+/// Blocks are to be finer than that dense grid by at least this factor: they take longer to look up.
+const FINER: f32 = 0.8;
 /// Nodes nearer to the surface than this many cells are exact. Farther ones only serve to cull.
 const EXACT_CELLS: f32 = 4.0;
 
@@ -50,7 +56,7 @@ impl<'a> Bounding<'a> {
     }
 
     /// The signed distance of a point. `last`, of a point close by, makes it quick and is replaced.
-    fn measure(&self, at: DVec3, last: &mut Option<Measured>) -> f32 {
+    pub(super) fn measure(&self, at: DVec3, last: &mut Option<Measured>) -> f32 {
         let guess = last.as_ref().map(|m| &m.nearest);
         let (distance, nearest) = match self {
             Bounding::Exactly(skin) => {
@@ -75,7 +81,7 @@ impl<'a> Bounding<'a> {
 }
 
 /// A point with its distance.
-struct Measured {
+pub(super) struct Measured {
     at: DVec3,
     /// Negative inside. Metres.
     distance: f64,
@@ -85,24 +91,34 @@ struct Measured {
 /// Where the nodes of a field are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
-    origin: Vec3,
-    cell: Vec3,
+    /// The first node. Metres.
+    pub(super) origin: Vec3,
+    /// Distances between neighbouring nodes along x, y and z. Metres.
+    pub(super) cell: Vec3,
     /// Number of nodes along x, y and z.
-    size: [usize; 3],
+    pub(super) size: [usize; 3],
 }
 
 impl Grid {
-    /// A grid around a mesh. `cell`: wished size; none for one that suits the thickness. Metres.
+    /// A grid around a mesh, no larger than memory allows. `cell`: wished size; none for one that suits the thickness. Metres.
     pub(crate) fn around(mesh: &Mesh, cell: Option<f32>) -> Grid {
         let bounds = mesh.bounds();
         let extent = bounds.max - bounds.min;
-        let wished = cell
-            .unwrap_or_else(|| mesh.half_thickness().min(mesh.measure_half_gap()) / CELLS_PER_HALF_THICKNESS);
         // Nodes on all six sides of the box around the mesh: the edges of boxes and plates are met exactly.
-        let cells = cells_along(extent, cell_size(extent, wished));
+        let cells = cells_along(extent, cell_size(extent, wished_cell(mesh, cell)));
         let cell = extent / Vec3::from_array(cells.map(|n| n as f32));
         let origin = bounds.min - cell * PADDING as f32;
         Grid { origin, cell, size: cells.map(|n| n as usize + 2 * PADDING + 1) }
+    }
+
+    /// The same of whole blocks, however large; there is more room behind the mesh.
+    pub(super) fn of_blocks(mesh: &Mesh, cell: f32) -> Grid {
+        let bounds = mesh.bounds();
+        let extent = bounds.max - bounds.min;
+        let cells = cells_along(extent, cell);
+        let cell = extent / Vec3::from_array(cells.map(|n| n as f32));
+        let size = cells.map(|n| (n as usize + 2 * PADDING).next_multiple_of(BLOCK) + 1);
+        Grid { origin: bounds.min - cell * PADDING as f32, cell, size }
     }
 
     /// Largest distance between neighbouring nodes. Metres.
@@ -110,15 +126,62 @@ impl Grid {
         self.cell.max_element()
     }
 
-    fn position(&self, node: [usize; 3]) -> DVec3 {
+    pub(super) fn position(&self, node: [usize; 3]) -> DVec3 {
         DVec3::from_array(node.map(|i| i as f64)) * self.cell.as_dvec3() + self.origin.as_dvec3()
     }
 }
 
-/// The field of a surface: exact distances at the nodes near it.
-pub(crate) fn bake(grid: Grid, bounding: &Bounding<'_>, progress: BakeProgress<'_>) -> Field {
+/// The field of a surface around a mesh: exact distances at the nodes near it. `cell`: wished size, none for one that suits the
+/// thickness. Metres.
+pub(crate) fn bake(
+    mesh: &Mesh,
+    cell: Option<f32>,
+    bounding: &Bounding<'_>,
+    progress: BakeProgress<'_>,
+) -> Field {
+    let dense = Grid::around(mesh, cell);
+    let field = in_blocks(mesh, cell, &dense, |grid, bytes| bake_blocks(grid, bounding, bytes, progress));
+    let field = field.unwrap_or_else(|| bake_dense(dense, bounding, progress));
+    field.measured_on(match bounding {
+        Bounding::Exactly(skin) => skin.mesh,
+        Bounding::Mended { surface, .. } => surface,
+    })
+}
+
+/// The field of a surface on a dense grid.
+pub(super) fn bake_dense(grid: Grid, bounding: &Bounding<'_>, progress: BakeProgress<'_>) -> Field {
     let distances = Baker { grid, bounding }.distances(progress);
-    Field::from_distances(grid.origin, grid.cell, grid.size, &distances)
+    Field::from_distances(&grid, &distances)
+}
+
+/// The field that `bake` makes in blocks, if that is much smaller than a dense grid of the wished cells, or where that would be too large,
+/// if it is finer than the dense grid that is not.
+fn in_blocks(
+    mesh: &Mesh,
+    cell: Option<f32>,
+    dense: &Grid,
+    bake: impl Fn(Grid, usize) -> Option<Field>,
+) -> Option<Field> {
+    let nodes: usize = dense.size.iter().product();
+    if nodes <= DENSE_MAX {
+        return None;
+    }
+    let wished = wished_cell(mesh, cell);
+    if dense.cell() <= wished {
+        return bake(Grid::of_blocks(mesh, wished), nodes);
+    }
+    // Finer blocks along the surface would be too many, by two layers of them.
+    let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.face_vector(t as u32).length()).sum();
+    let layers = 2.0 * area * (2 * NODES) as f64 / (2 * NODES_MAX) as f64;
+    let finest = layers.sqrt() as f32 / BLOCK as f32;
+    let mut finer = wished.max(finest).max(FINEST * dense.cell());
+    while finer < FINER * dense.cell() {
+        if let Some(field) = bake(Grid::of_blocks(mesh, finer), 2 * NODES_MAX) {
+            return Some(field);
+        }
+        finer *= 1.2;
+    }
+    None
 }
 
 /// A field in the making.
@@ -229,6 +292,11 @@ impl Corners {
             self.distances[(z * self.size[1] + y) * self.size[0] + x]
         })
     }
+}
+
+/// The size of cells that is wished for, or that suits thickness and gaps. Metres.
+fn wished_cell(mesh: &Mesh, cell: Option<f32>) -> f32 {
+    cell.unwrap_or_else(|| mesh.half_thickness().min(mesh.measure_half_gap()) / CELLS_PER_HALF_THICKNESS)
 }
 
 /// The wished cell size, or the smallest larger one (in steps of a twentieth) whose grid is not too large.

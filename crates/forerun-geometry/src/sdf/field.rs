@@ -1,33 +1,37 @@
-//! Field: the signed distance to a closed surface on a dense grid, negative inside.
+//! Field: the signed distance to a closed surface on a grid, negative inside.
 //!
 //! Promise: a look-up is a pure function of the field and the point, with the same bits on every target, and never
 //! panics, whatever the point (not-a-number gives not-a-number).
 
 use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
 
+use super::accuracy::FieldError;
+use super::blocks::{self, Blocks};
 use super::eight::{lane, normalized, splat};
-use super::kept::Reader;
+use super::primitive::LookUp;
 use crate::{Aabb, Vec3};
 
-/// Signed distances in 16 bits at the nodes of a dense grid, read by trilinear interpolation.
+/// Signed distances in 16 bits at the nodes of a grid, read by trilinear interpolation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// Position of the first node. Metres.
-    origin: Vec3,
+    pub(super) origin: Vec3,
     /// Distance between neighbouring nodes along x, y and z, about the same. Metres.
-    cell: Vec3,
-    /// Number of nodes along x, y and z, 3 or more each; fewer than 2^23 in all.
-    size: [usize; 3],
+    pub(super) cell: Vec3,
+    /// Number of nodes along x, y and z, 3 or more each; of a dense grid fewer than 2^23 in all.
+    pub(super) size: [usize; 3],
     /// Number of cells along x, y and z, ready to compute with.
-    cells: Vec3,
+    pub(super) cells: Vec3,
     /// Metres per unit of `nodes`.
-    scale: f32,
-    /// Distances at the nodes, x fastest, then y, then z.
-    nodes: Vec<i16>,
+    pub(super) scale: f32,
+    /// What it is off by on the surface.
+    pub(super) error: FieldError,
+    /// Which parts of the grid are fine; none for a dense grid, which is fine everywhere.
+    pub(super) blocks: Option<Blocks>,
+    /// Distances at the nodes: of a dense grid x fastest, then y, then z; else in the order of the blocks.
+    pub(super) nodes: Vec<i16>,
 }
 
-/// More nodes than a grid may have: whole numbers below this are exact in the arithmetic of look-ups.
-const NODES_END: usize = 1 << 23;
 /// The bits of a mask that is set in all lanes.
 const ALL: u32 = (1 << LANES) - 1;
 
@@ -39,79 +43,21 @@ struct Place<F> {
     fraction: V8<F>,
     /// From the point of the grid's box nearest to the point, to the point: zero inside. Metres.
     offset: V8<F>,
+    /// Size of a fine cell as a part of that of the cell.
+    step: F,
 }
 
 impl Field {
-    /// A field from distances (metres) at the nodes of a grid, x fastest.
-    ///
-    /// The distances are stored in steps of the largest one over 32767. Before that a twelfth of the sum of second
-    /// differences is taken off: between nodes trilinear interpolation lies above a convex function by that much on
-    /// average, which would make round shapes too small. Not so at sharp edges, where it would make them too large.
-    pub(crate) fn from_distances(origin: Vec3, cell: Vec3, size: [usize; 3], distances: &[f32]) -> Field {
-        let corrected = without_interpolation_bias(size, distances, cell.min_element());
-        let largest = corrected.iter().fold(0.0_f32, |m, d| m.max(d.abs()));
-        let scale = if largest > 0.0 { largest / f32::from(i16::MAX) } else { 1.0 };
-        let nodes = corrected.iter().map(|d| (d / scale).round() as i16).collect();
-        Field { origin, cell, size, cells: Vec3::from_array(size.map(|n| (n - 1) as f32)), scale, nodes }
-    }
-
-    /// Appends what [`Field::read`] reads.
-    pub(super) fn write(&self, out: &mut Vec<u8>) {
-        let numbers = self.origin.to_array().into_iter().chain(self.cell.to_array()).chain([self.scale]);
-        numbers.for_each(|x| out.extend(x.to_le_bytes()));
-        self.size.iter().for_each(|n| out.extend((*n as u32).to_le_bytes()));
-        self.nodes.iter().for_each(|d| out.extend(d.to_le_bytes()));
-    }
-
-    /// A field that was written; none where it cannot be one.
-    pub(super) fn read(reader: &mut Reader<'_>) -> Option<Field> {
-        let (origin, cell, scale) = (reader.vec3()?, reader.vec3()?, reader.f32()?);
-        let size = [reader.u32()?, reader.u32()?, reader.u32()?].map(|n| n as usize);
-        let count = size.iter().try_fold(1_usize, |all, n| all.checked_mul(*n))?;
-        let lengths = [cell.x, cell.y, cell.z, scale];
-        let possible = origin.is_finite()
-            && lengths.iter().all(|x| *x > 0.0 && x.is_finite())
-            && size.iter().all(|n| *n >= 3)
-            && count < NODES_END;
-        if !possible {
-            return None;
-        }
-        let nodes = reader.i16s(count)?;
-        Some(Field {
-            origin,
-            cell,
-            size,
-            cells: Vec3::from_array(size.map(|n| (n - 1) as f32)),
-            scale,
-            nodes,
-        })
+    /// How far it is off at points of the surface.
+    #[must_use]
+    pub fn error(&self) -> FieldError {
+        self.error
     }
 
     /// Largest distance between neighbouring nodes. Metres.
     #[must_use]
     pub fn cell(&self) -> f32 {
         self.cell.max_element()
-    }
-
-    /// Distances between neighbouring nodes along x, y and z. Metres.
-    pub(super) fn cell_size(&self) -> Vec3 {
-        self.cell
-    }
-
-    /// Calls `visit` with the lowest corner of each cell and the distances at its corners: x changes fastest, then y, then z.
-    pub(super) fn each_cell(&self, mut visit: impl FnMut(Vec3, [f32; 8])) {
-        let [nx, ny, nz] = self.size;
-        let (row, layer) = (nx, nx * ny);
-        for z in 0..nz - 1 {
-            for y in 0..ny - 1 {
-                for x in 0..nx - 1 {
-                    let base = z * layer + y * row + x;
-                    let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
-                    let distances = corners.map(|k| f32::from(self.nodes[base + k]) * self.scale);
-                    visit(self.origin + Vec3::new(x as f32, y as f32, z as f32) * self.cell, distances);
-                }
-            }
-        }
     }
 
     /// The box that the grid covers.
@@ -127,10 +73,22 @@ impl Field {
         point.cmpge(bounds.min).all() && point.cmple(bounds.max).all()
     }
 
+    /// Number of fine cells along x, y and z.
+    pub(crate) fn cells(&self) -> [usize; 3] {
+        self.size.map(|n| n - 1)
+    }
+
+    /// The fine cell that a point is in; the nearest one for a point beyond the grid.
+    pub(crate) fn cell_of(&self, point: Vec3) -> [usize; 3] {
+        let place = (point - self.origin) / self.cell;
+        // Casts saturate, and what is not a number becomes 0.
+        [0, 1, 2].map(|k| (place[k] as usize).min(self.size[k] - 2))
+    }
+
     /// Memory that the nodes take.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<i16>()
+        size_of_val(&*self.nodes) + self.blocks.as_ref().map_or(0, Blocks::bytes)
     }
 
     /// Signed distance (metres) and its gradient (about 1 long) at a point of the field's frame.
@@ -146,79 +104,44 @@ impl Field {
     /// Gradient by central differences over a cell: smooth where the trilinear one jumps from cell to cell.
     #[must_use]
     pub fn smooth_gradient(&self, point: Vec3) -> Vec3 {
-        let taps = self.taps(point);
-        let (distances, _) = self.look_up::<Portable>(V8::from_arrays(taps.map(|[a, b, c, d, e, f]| {
-            // A look-up is of eight: the last two are not wanted.
-            [a, b, c, d, e, f, f, f]
-        })));
-        let [a, b, c, d, e, f, ..] = distances.to_array();
-        self.difference([a, b, c, d, e, f])
+        lane(&self.differences::<Portable>(splat(point)), 0)
     }
 
-    /// Where the distances are asked that central differences at a point are made of, by component: half a cell to either side along x, y and z.
+    /// [`Field::smooth_gradient`] at eight points.
     #[inline(always)]
-    pub(crate) fn taps(&self, p: Vec3) -> [[f32; 6]; 3] {
-        let h = self.cell * 0.5;
-        [
-            [p.x + h.x, p.x - h.x, p.x, p.x, p.x, p.x],
-            [p.y, p.y, p.y + h.y, p.y - h.y, p.y, p.y],
-            [p.z, p.z, p.z, p.z, p.z + h.z, p.z - h.z],
-        ]
+    pub(crate) fn differences<F: Lanes>(&self, points: V8<F>) -> V8<F> {
+        let (step, cell, none) = (splat::<F>(self.cell * 0.5), splat::<F>(self.cell), F::zero());
+        let mut along = [none; 3];
+        for (axis, half) in [step.x, step.y, step.z].into_iter().enumerate() {
+            let mut steps = [none; 3];
+            steps[axis] = half;
+            let step = V8 { x: steps[0], y: steps[1], z: steps[2] };
+            along[axis] = self.look_up(points + step).0 - self.look_up(points - step).0;
+        }
+        V8 { x: along[0] / cell.x, y: along[1] / cell.y, z: along[2] / cell.z }
     }
 
-    /// The gradient, from the distances at [`Field::taps`].
+    /// From the lowest node of a cell to the rows of nodes along its four edges in the direction of x.
     #[inline(always)]
-    pub(crate) fn difference(&self, d: [f32; 6]) -> Vec3 {
-        Vec3::new(d[0] - d[1], d[2] - d[3], d[4] - d[5]) / self.cell
+    pub(super) fn rows(&self) -> [u32; 4] {
+        let (row, layer) = (self.size[0] as u32, (self.size[0] * self.size[1]) as u32);
+        if self.blocks.is_some() { blocks::ROWS } else { [0, row, layer, layer + row] }
     }
 
-    /// [`Field::distance_and_gradient`] at eight points.
     #[inline(always)]
-    pub(crate) fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>) {
-        let place = self.place(points);
+    fn cell_at<F: Lanes>(&self, place: &Place<F>) -> Cells<F> {
         let [[a, b], [c, d], [e, f], [g, h]] = F::gather_pairs(&self.nodes, &place.base, &self.rows());
         let (fx, fy, fz) = (place.fraction.x, place.fraction.y, place.fraction.z);
         let (ab, cd, ef, gh) = (b - a, d - c, f - e, h - g);
         let (y0, y1, y2, y3) = (a + fx * ab, c + fx * cd, e + fx * ef, g + fx * gh);
         let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
-        let distance = (z0 + fz * (z1 - z0)) * F::splat(self.scale);
-        let (x0, x1) = (ab + fy * (cd - ab), ef + fy * (gh - ef));
-        let (s0, s1) = (y1 - y0, y3 - y2);
-        let slope = splat::<F>(Vec3::splat(self.scale) / self.cell);
-        let gradient = V8 { x: x0 + fz * (x1 - x0), y: s0 + fz * (s1 - s0), z: z1 - z0 }.times(slope);
-        // Not "outside where above 0": points that are not numbers are not inside.
-        let inside = place.offset.dot(place.offset).lt(F::splat(f32::MIN_POSITIVE));
-        if inside.bits() == ALL {
-            return (distance, gradient);
+        Cells {
+            distance: (z0 + fz * (z1 - z0)) * F::splat(self.scale),
+            fraction: place.fraction,
+            along_x: [ab, cd, ef, gh],
+            on_x: [y0, y1, y2, y3],
+            on_faces: [z0, z1],
         }
-        // The surface point y that q, the nearest point of the box, sees: p - y = offset + phi(q) grad phi(q).
-        let away = place.offset + normalized(gradient) * distance.max(F::zero());
-        (inside.select(distance, away.length()), inside.select_v(gradient, normalized(away)))
-    }
-
-    /// Lower bounds of the signed distance at eight points, exact (but for the grid) inside the grid's box.
-    ///
-    /// Beyond the box, with o the offset from its nearest point q: the surface lies inside the box, which is convex,
-    /// so no point of it is nearer than the square root of o² + phi(q)².
-    #[inline(always)]
-    pub(crate) fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F {
-        let place = self.place(points);
-        let [[a, b], [c, d], [e, f], [g, h]] = F::gather_pairs(&self.nodes, &place.base, &self.rows());
-        let (fx, fy, fz) = (place.fraction.x, place.fraction.y, place.fraction.z);
-        let (y0, y1, y2, y3) = (a + fx * (b - a), c + fx * (d - c), e + fx * (f - e), g + fx * (h - g));
-        let (z0, z1) = (y0 + fy * (y1 - y0), y2 + fy * (y3 - y2));
-        let distance = (z0 + fz * (z1 - z0)) * F::splat(self.scale);
-        let offset_squared = place.offset.dot(place.offset);
-        let inside = offset_squared.lt(F::splat(f32::MIN_POSITIVE));
-        let positive = distance.max(F::zero());
-        inside.select(distance, (offset_squared + positive * positive).sqrt())
-    }
-
-    /// From the lowest node of a cell to the rows of nodes along its four edges in the direction of x.
-    #[inline(always)]
-    fn rows(&self) -> [u32; 4] {
-        let (row, layer) = (self.size[0] as u32, (self.size[0] * self.size[1]) as u32);
-        [0, row, layer, layer + row]
     }
 
     #[inline(always)]
@@ -227,9 +150,15 @@ impl Field {
         let (x, fx, ox) = self.place_along(0, points.x, inverse_cell.x);
         let (y, fy, oy) = self.place_along(1, points.y, inverse_cell.y);
         let (z, fz, oz) = self.place_along(2, points.z, inverse_cell.z);
+        let offset = V8 { x: ox, y: oy, z: oz };
+        if let Some(blocks) = &self.blocks {
+            let place = blocks.place([x + fx, y + fy, z + fz].map(F::to_array));
+            let fraction = V8::from_arrays(place.fraction);
+            return Place { base: place.base, fraction, offset, step: F::from_array(place.step) };
+        }
         let base = (z * F::splat(self.cells.y + 1.0) + y) * F::splat(self.cells.x + 1.0) + x;
-        let (fraction, offset) = (V8 { x: fx, y: fy, z: fz }, V8 { x: ox, y: oy, z: oz });
-        Place { base: base.to_whole(), fraction, offset }
+        let fraction = V8 { x: fx, y: fy, z: fz };
+        Place { base: base.to_whole(), fraction, offset, step: F::one() }
     }
 
     /// Index of the cell along an axis, position in the cell, and offset from the grid's box.
@@ -247,36 +176,88 @@ impl Field {
     }
 }
 
-/// Second differences that would take off more than this part of a cell come from sharp edges: the smallest radius
-/// that the cells are made for takes off a twenty-fourth.
-const ROUND_PART: f32 = 1.0 / 16.0;
-
-/// The distances less (sum of the 6 neighbours - 6 times the node) / 12; nodes on the faces of the grid and at sharp
-/// edges stay.
-#[allow(clippy::needless_range_loop, reason = "the index is that of the neighbours too")]
-fn without_interpolation_bias(size: [usize; 3], distances: &[f32], cell: f32) -> Vec<f32> {
-    let [nx, ny, nz] = size;
-    let (row, layer) = (nx, nx * ny);
-    let mut corrected = distances.to_vec();
-    for z in 1..nz - 1 {
-        for y in 1..ny - 1 {
-            for i in z * layer + y * row + 1..z * layer + y * row + nx - 1 {
-                let d = |k: usize| distances[k];
-                let neighbours =
-                    (d(i - 1) + d(i + 1)) + (d(i - row) + d(i + row)) + (d(i - layer) + d(i + layer));
-                let bias = (neighbours - 6.0 * d(i)) * (1.0 / 12.0);
-                if bias.abs() < ROUND_PART * cell {
-                    corrected[i] = d(i) - bias;
-                }
-            }
-        }
+impl LookUp for Field {
+    #[inline(always)]
+    fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>) {
+        let place = self.place(points);
+        let cell = self.cell_at(&place);
+        cell.answer(&place, cell.gradient(self, &place))
     }
-    corrected
+
+    /// Far from the surface, as most points are, the gradient is not worked out.
+    #[inline(always)]
+    fn look_up_near<F: Lanes>(&self, points: V8<F>, asked: u32, limit: f32) -> Option<(F, V8<F>)> {
+        let place = self.place(points);
+        let cell = self.cell_at(&place);
+        if place.inside().bits() == ALL {
+            let near = cell.distance.lt(F::splat(limit)).bits() & asked != 0;
+            return if near { Some((cell.distance, cell.gradient(self, &place))) } else { None };
+        }
+        Some(cell.answer(&place, cell.gradient(self, &place)))
+    }
+
+    /// Beyond the grid's box, with o the offset from its nearest point q: the surface lies inside the box, which is
+    /// convex, so no point of it is nearer than the square root of o² + phi(q)².
+    #[inline(always)]
+    fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F {
+        let place = self.place(points);
+        let distance = self.cell_at(&place).distance;
+        let positive = distance.max(F::zero());
+        place.inside().select(distance, (place.offset.dot(place.offset) + positive * positive).sqrt())
+    }
+}
+
+impl<F: Lanes> Place<F> {
+    /// Which points are inside the grid's box. Not "outside where above 0": points that are not numbers are not inside.
+    #[inline(always)]
+    fn inside(&self) -> F::Mask {
+        self.offset.dot(self.offset).lt(F::splat(f32::MIN_POSITIVE))
+    }
+}
+
+/// What the corners of eight cells say of points in them.
+struct Cells<F> {
+    /// By trilinear interpolation. Metres.
+    distance: F,
+    /// Position in the cell, 0 to 1.
+    fraction: V8<F>,
+    /// Differences along the four edges in the direction of x.
+    along_x: [F; 4],
+    /// Values on these edges.
+    on_x: [F; 4],
+    /// Values in the middle of the two faces across z.
+    on_faces: [F; 2],
+}
+
+impl<F: Lanes> Cells<F> {
+    #[inline(always)]
+    fn gradient(&self, field: &Field, place: &Place<F>) -> V8<F> {
+        let ([ab, cd, ef, gh], [y0, y1, y2, y3], [z0, z1]) = (self.along_x, self.on_x, self.on_faces);
+        let (fy, fz) = (self.fraction.y, self.fraction.z);
+        let (x0, x1) = (ab + fy * (cd - ab), ef + fy * (gh - ef));
+        let (s0, s1) = (y1 - y0, y3 - y2);
+        let slope = splat::<F>(Vec3::splat(field.scale) / field.cell);
+        let gradient = V8 { x: x0 + fz * (x1 - x0), y: s0 + fz * (s1 - s0), z: z1 - z0 }.times(slope);
+        if field.blocks.is_some() { gradient * place.step } else { gradient }
+    }
+
+    /// Distance and gradient, beyond the grid's box too.
+    #[inline(always)]
+    fn answer(&self, place: &Place<F>, gradient: V8<F>) -> (F, V8<F>) {
+        let inside = place.inside();
+        if inside.bits() == ALL {
+            return (self.distance, gradient);
+        }
+        // The surface point y that q, the nearest point of the box, sees: p - y = offset + phi(q) grad phi(q).
+        let away = place.offset + normalized(gradient) * self.distance.max(F::zero());
+        (inside.select(self.distance, away.length()), inside.select_v(gradient, normalized(away)))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sdf::bake::Grid;
 
     const RADIUS: f32 = 0.4;
 
@@ -292,7 +273,7 @@ mod tests {
                 }
             }
         }
-        Field::from_distances(origin, cell, size, &distances)
+        Field::from_distances(&Grid { origin, cell, size }, &distances)
     }
 
     fn points() -> impl Iterator<Item = Vec3> {

@@ -29,7 +29,7 @@ pub(crate) enum Verdict {
     /// What they are the surface of, all of them.
     Sound,
     /// What they are the surface of by and large.
-    Mended(Mended),
+    Mended(Box<Mended>),
     /// Nothing that one could tell.
     Hopeless,
 }
@@ -54,7 +54,7 @@ const BESIDE: f64 = 0.02;
 /// The same as part of the radius of the circle in the piece of wall: not to look past a corner.
 const BESIDE_PIECE: f64 = 0.1;
 /// Pieces that walls may be cut into, about.
-const PIECES_MAX: f64 = 262_144.0;
+const PIECES_MAX: f64 = 65_536.0;
 
 /// Areas of a triangle by what is on its sides. Square metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -107,7 +107,7 @@ pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) 
     let vertices: Vec<Vec3> = surface.iter().flatten().map(|v| v.as_vec3()).collect();
     let triangles = (0..surface.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     let surface = Mesh::assemble(vertices, triangles);
-    Verdict::Mended(Mended { surface, gap: size, found, covered })
+    Verdict::Mended(Box::new(Mended { surface, gap: size, found, covered }))
 }
 
 /// Whether the areas of triangles, and of covers after the first `triangles`, are those of the surface of something, and what to say about it.

@@ -22,8 +22,8 @@ impl Moments {
     /// Those of the inside of a field. In parts that the surface passes it counts as a plane.
     pub(crate) fn of(field: &Field) -> Moments {
         let mut sum = Moments { volume: 0.0, first: DVec3::ZERO, second: DMat3::ZERO };
-        let size = field.cell_size().as_dvec3();
-        field.each_cell(|low, corners| {
+        field.each_cell(|low, size, corners| {
+            let size = size.as_dvec3();
             let (least, most) =
                 corners.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, m), d| (l.min(*d), m.max(*d)));
             if most <= 0.0 {

@@ -56,6 +56,16 @@ pub(crate) struct Signed {
     pub(crate) on_boundary: bool,
 }
 
+impl Nearest {
+    /// Whether the nearest point is inside a triangle, not on an edge or corner.
+    pub(crate) fn is_on_face(&self) -> bool {
+        self.feature == Feature::Face
+    }
+}
+
+/// Points this near to the surface are on it: poses are no better known. Metres.
+const ON_SURFACE: f64 = 1e-5;
+
 impl<'a> Skin<'a> {
     /// The skin of a finished mesh.
     pub(crate) fn of(mesh: &'a Mesh) -> Skin<'a> {
@@ -85,8 +95,31 @@ impl<'a> Skin<'a> {
         let length = nearest.distance_squared.sqrt();
         let sign = if offset.dot(normal) < 0.0 { -1.0 } else { 1.0 };
         // On the surface itself the offset is rounding; the normal is what it stands for.
-        let gradient = if length > 1e-7 { offset * (sign / length) } else { normal };
+        let gradient = if length > ON_SURFACE { offset * (sign / length) } else { normal };
         Signed { distance: sign * length, gradient: gradient.as_vec3(), on_boundary }
+    }
+
+    /// Of the planes of the triangles at the nearest point the one that faces `outwards` best: distance and normal.
+    ///
+    /// At a corner it is one of the triangle that was found and those next to it.
+    pub(crate) fn facing(&self, point: DVec3, nearest: &Nearest, outwards: DVec3) -> (f32, Vec3) {
+        let own = face_normal(self.mesh, nearest.triangle);
+        let edges = match nearest.feature {
+            Feature::Face => [None, None],
+            Feature::Edge(k) => [Some(k), None],
+            Feature::Corner(k) => [Some(k), Some((k + 2) % 3)],
+        };
+        let mut best = own;
+        for k in edges.into_iter().flatten() {
+            let edge = self.normals.triangle_edges[nearest.triangle][k] as usize;
+            // The normal of the edge is halfway between those of its two triangles.
+            let middle = self.normals.edge_normals[edge].as_dvec3();
+            let other = middle * (2.0 * own.dot(middle)) - own;
+            let is_better = self.normals.edge_kinds[edge] != EdgeKind::Boundary
+                && other.dot(outwards) < best.dot(outwards) - 1e-6;
+            best = if is_better { other } else { best };
+        }
+        ((point - nearest.point).dot(best) as f32, best.as_vec3())
     }
 
     /// [`Skin::signed`] of the nearest point.

@@ -28,10 +28,38 @@ pub(crate) enum Surface<'a> {
     Sheet(Skin<'a>, f32),
 }
 
-impl Surface<'_> {
-    /// Signed distance (metres) and gradient at eight points. Gradients are not quite unit.
+/// What eight points can be looked up in at a time.
+pub(crate) trait LookUp {
+    /// Signed distances (metres) and gradients. Gradients are not quite unit.
+    ///
+    /// Beyond a grid's box this is the distance to a point of the surface, that nearest to the nearest point of the box:
+    /// the true distance or more.
+    fn look_up<F: Lanes>(&self, points: V8<F>) -> (F, V8<F>);
+
+    /// [`LookUp::look_up`] where only some of eight points are `asked` for; the answers for the others say nothing.
     #[inline(always)]
-    pub(crate) fn look_up<F: Lanes>(&self, p: V8<F>) -> (F, V8<F>) {
+    fn look_up_some<F: Lanes>(&self, points: V8<F>, _asked: u32) -> (F, V8<F>) {
+        self.look_up(points)
+    }
+
+    /// [`LookUp::look_up_some`]; may be none where all distances are `limit` (metres) or more.
+    #[inline(always)]
+    fn look_up_near<F: Lanes>(&self, points: V8<F>, asked: u32, limit: f32) -> Option<(F, V8<F>)> {
+        let (distances, gradients) = self.look_up_some(points, asked);
+        let near = distances.lt(F::splat(limit)).bits() & asked != 0;
+        if near { Some((distances, gradients)) } else { None }
+    }
+
+    /// Lower bounds of the signed distances, for culling; exact (but for a grid) inside a grid's box.
+    fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F;
+}
+
+/// The bits of all eight points.
+const ALL: u32 = (1 << LANES) - 1;
+
+impl LookUp for Surface<'_> {
+    #[inline(always)]
+    fn look_up<F: Lanes>(&self, p: V8<F>) -> (F, V8<F>) {
         match self {
             Surface::HalfSpace => (p.y, splat(Vec3::Y)),
             Surface::Sphere(radius) => round(p, *radius),
@@ -45,19 +73,44 @@ impl Surface<'_> {
             Surface::Hull(planes) => hull(p, planes),
             Surface::Field(field) => field.look_up(p),
             Surface::Sheet(skin, depth_limit) => {
-                let (distance, gradient) = sheet(&p.form(), skin, *depth_limit);
+                let (distance, gradient) = sheet(&p.form(), skin, *depth_limit, ALL);
                 (F::from_array(distance), gradient.form())
             }
         }
     }
 
-    /// Lower bounds of the signed distance at eight points, for culling.
     #[inline(always)]
-    pub(crate) fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
+    fn look_up_some<F: Lanes>(&self, p: V8<F>, asked: u32) -> (F, V8<F>) {
+        if let Surface::Sheet(skin, depth_limit) = self {
+            let (distance, gradient) = sheet(&p.form(), skin, *depth_limit, asked);
+            (F::from_array(distance), gradient.form())
+        } else {
+            self.look_up(p)
+        }
+    }
+
+    #[inline(always)]
+    fn lower_bound<F: Lanes>(&self, p: V8<F>) -> F {
         match self {
             Surface::Field(field) => field.lower_bound(p),
             Surface::Sheet(skin, depth_limit) => F::from_array(sheet_bound(&p.form(), skin, *depth_limit)),
             _ => self.look_up(p).0,
+        }
+    }
+}
+
+/// The bits of all eight points.
+const ALL: u32 = (1 << LANES) - 1;
+
+impl Surface<'_> {
+    /// [`LookUp::look_up`] where only some of eight points are asked for; the answers for the others say nothing.
+    #[inline(always)]
+    pub(crate) fn look_up_some<F: Lanes>(&self, p: V8<F>, asked: u32) -> (F, V8<F>) {
+        if let Surface::Sheet(skin, depth_limit) = self {
+            let (distance, gradient) = sheet(&p.form(), skin, *depth_limit, asked);
+            (F::from_array(distance), gradient.form())
+        } else {
+            self.look_up(p)
         }
     }
 
@@ -156,9 +209,9 @@ pub(crate) fn hull_planes(hull: &Hull, planes: &mut Vec<(Vec3, f32)>) {
     planes.extend(edges);
 }
 
-fn sheet(p: &V8<Portable>, skin: &Skin<'_>, depth_limit: f32) -> ([f32; LANES], V8<Portable>) {
+fn sheet(p: &V8<Portable>, skin: &Skin<'_>, depth_limit: f32, asked: u32) -> ([f32; LANES], V8<Portable>) {
     let (mut distance, mut gradient) = ([f32::INFINITY; LANES], [Vec3::Y; LANES]);
-    for i in 0..LANES {
+    for i in (0..LANES).filter(|i| asked >> i & 1 == 1) {
         let signed = skin.look_up(lane(p, i));
         // Behind a boundary edge is beside the sheet; far behind the sheet is under a bridge.
         let lost = signed.on_boundary || signed.distance < -f64::from(depth_limit);

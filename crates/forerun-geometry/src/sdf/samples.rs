@@ -69,11 +69,11 @@ pub(crate) struct Spheres {
 impl Samples {
     /// Sorts the samples into the hierarchy.
     pub(crate) fn new(mut samples: Vec<Sample>) -> Samples {
-        sort_by_place(&mut samples);
+        sort_by_place(&mut samples, |s| s.point);
         let mut sorted = Samples::default();
         sorted.fill(&samples);
         for groups in samples.chunks(LANES * LANES * LANES) {
-            sorted.node_spheres.push(Spheres::around(groups, LANES * LANES));
+            sorted.node_spheres.push(Spheres::around(groups, LANES * LANES, |s| [s.point; 2]));
         }
         sorted
     }
@@ -84,7 +84,9 @@ impl Samples {
         leaves.clear();
         leaves.extend(samples.chunks(LANES).map(Leaf::of));
         leaf_spheres.clear();
-        leaf_spheres.extend(samples.chunks(LANES * LANES).map(|groups| Spheres::around(groups, LANES)));
+        leaf_spheres.extend(
+            samples.chunks(LANES * LANES).map(|groups| Spheres::around(groups, LANES, |s| [s.point; 2])),
+        );
         node_spheres.clear();
         *count = samples.len();
     }
@@ -146,15 +148,15 @@ impl Leaf {
 }
 
 impl Spheres {
-    /// The spheres around up to eight groups of so many samples.
-    fn around(samples: &[Sample], group: usize) -> Spheres {
+    /// The spheres around up to eight groups of so many things, each between two points.
+    pub(super) fn around<T>(things: &[T], group: usize, ends: fn(&T) -> [Vec3; 2]) -> Spheres {
         let (mut centre, mut radius) = ([Vec3::ZERO; LANES], [f32::NEG_INFINITY; LANES]);
-        for (i, group) in samples.chunks(group).enumerate() {
-            let min = group.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
-            let max = group.iter().fold(Vec3::NEG_INFINITY, |m, s| m.max(s.point));
+        for (i, group) in things.chunks(group).enumerate() {
+            let points = || group.iter().flat_map(ends);
+            let min = points().fold(Vec3::INFINITY, Vec3::min);
+            let max = points().fold(Vec3::NEG_INFINITY, Vec3::max);
             centre[i] = (min + max) * 0.5;
-            let farthest =
-                group.iter().fold(0.0_f32, |r, s| r.max(s.point.distance_squared(centre[i]))).sqrt();
+            let farthest = points().fold(0.0_f32, |r, p| r.max(p.distance_squared(centre[i]))).sqrt();
             // A little more, for what the sums below may lose.
             radius[i] = farthest * 1.0001 + 1e-6;
         }
@@ -162,24 +164,24 @@ impl Spheres {
     }
 }
 
-/// Sorts samples so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
-fn sort_by_place(samples: &mut [Sample]) {
-    if samples.len() <= LANES {
+/// Sorts things at places so that every run of 8, and of 64, is close together: halves along the longest side, again and again.
+pub(super) fn sort_by_place<T>(things: &mut [T], place: fn(&T) -> Vec3) {
+    if things.len() <= LANES {
         return;
     }
-    let min = samples.iter().fold(Vec3::INFINITY, |m, s| m.min(s.point));
-    let max = samples.iter().fold(Vec3::NEG_INFINITY, |m, s| m.max(s.point));
+    let min = things.iter().fold(Vec3::INFINITY, |m, t| m.min(place(t)));
+    let max = things.iter().fold(Vec3::NEG_INFINITY, |m, t| m.max(place(t)));
     let axis = (max - min).max_position();
-    let key = |s: &Sample| [s.point[axis], s.point[(axis + 1) % 3], s.point[(axis + 2) % 3]];
-    samples.sort_by(|a, b| {
+    let key = |t: &T| [0, 1, 2].map(|k| place(t)[(axis + k) % 3]);
+    things.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
     });
-    let leaf_or_node = if samples.len() > LANES * LANES { LANES * LANES } else { LANES };
-    let half = (samples.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
-    let (low, high) = samples.split_at_mut(half);
-    sort_by_place(low);
-    sort_by_place(high);
+    let leaf_or_node = if things.len() > LANES * LANES { LANES * LANES } else { LANES };
+    let half = (things.len() / 2).div_ceil(leaf_or_node) * leaf_or_node;
+    let (low, high) = things.split_at_mut(half);
+    sort_by_place(low, place);
+    sort_by_place(high, place);
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ pub struct MeshOptions {
     /// Whether it must have an inside.
     pub inside: Inside,
     /// Wished distance between nodes of the field. Metres, above 0. Larger cells are used where the field would take
-    /// too much memory. None: an eighth of the smallest thickness of the mesh.
+    /// more than 2 MiB. None: an eighth of the smallest thickness, or gap, of the mesh.
     pub cell: Option<f32>,
 }
 
@@ -163,17 +163,18 @@ impl MeshDraft {
         progress: BakeProgress<'_>,
     ) -> Result<Option<Field>, MeshError> {
         mesh.half_thickness = mesh.measure_half_thickness();
-        let grid = Grid::around(mesh, self.options.cell);
-        match survey(mesh, &self.shells, &self.covers, grid.cell().into()) {
+        let wished = self.options.cell;
+        let cell = Grid::around(mesh, wished).cell();
+        match survey(mesh, &self.shells, &self.covers, cell.into()) {
             Verdict::Sound => {
                 mesh.enclosure = Enclosure::Closed;
                 let surface = Bounding::Exactly(Skin { mesh, normals });
-                Ok(Some(bake(grid, &surface, progress)))
+                Ok(Some(bake(mesh, wished, &surface, progress)))
             }
             Verdict::Mended(mended) => {
                 mesh.enclosure = Enclosure::Mended;
                 mended.found.note_in(&mut mesh.repairs);
-                Ok(Some(bake(grid, &Bounding::mended(&mended), progress)))
+                Ok(Some(bake(mesh, wished, &Bounding::mended(&mended), progress)))
             }
             Verdict::Hopeless if self.options.inside == Inside::Needed => {
                 let (volume, _) = self.volume_and_area();

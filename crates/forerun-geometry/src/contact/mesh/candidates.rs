@@ -1,6 +1,6 @@
 //! Candidates: points of one surface near the other, eight at a time.
 
-use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
+use forerun_lanes::{LaneMask, Lanes, Portable, V8};
 
 use super::directions::Way;
 use crate::Vec3;
@@ -86,21 +86,45 @@ impl Candidates {
             least = deeper.select(left, least);
             at = deeper.select(F::splat(k as f32), at);
         }
-        first_greatest((-least).to_array(), at.to_array(), f32::NEG_INFINITY)
+        first_greatest(-least, at, f32::NEG_INFINITY)
     }
 }
 
 /// Where the greatest of eight numbers came from, each in the block given for its lane; of equals the first. None if
 /// none is above `floor`.
 #[inline(always)]
-pub(super) fn first_greatest(numbers: [f32; LANES], blocks: [f32; LANES], floor: f32) -> Option<Place> {
-    let (mut best, mut at, mut found) = (floor, f32::INFINITY, None);
-    for lane in 0..LANES {
-        let earlier = numbers[lane] >= best && found.is_some() && blocks[lane] < at;
-        if numbers[lane] > best || earlier {
-            (best, at) = (numbers[lane], blocks[lane]);
-            found = Some(Place { block: at as usize, lane });
-        }
+pub(super) fn first_greatest<F: Lanes>(numbers: F, blocks: F, floor: f32) -> Option<Place> {
+    let mut greatest = floor;
+    for number in numbers.to_array() {
+        greatest = if number > greatest { number } else { greatest };
     }
-    found
+    if greatest <= floor {
+        return None;
+    }
+    let mut equal = F::splat(greatest).le(numbers).bits();
+    let (blocks, mut best) = (blocks.to_array(), equal.trailing_zeros() as usize);
+    equal &= equal - 1;
+    while equal != 0 {
+        let lane = equal.trailing_zeros() as usize;
+        equal &= equal - 1;
+        best = if blocks[lane] < blocks[best] { lane } else { best };
+    }
+    Some(Place { block: blocks[best] as usize, lane: best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_equals_the_first_candidate_is_the_greatest() {
+        let greatest = |numbers: [f32; 8], blocks: [f32; 8]| {
+            first_greatest(Portable::from_array(numbers), Portable::from_array(blocks), 0.5)
+        };
+        let blocks = [3.0, 2.0, 2.0, 1.0, 0.0, 4.0, 4.0, 9.0];
+        let place = |block, lane| Some(Place { block, lane });
+        assert_eq!(greatest([1.0, 1.0, 1.0, 0.9, 0.0, 1.0, 1.0, 0.6], blocks), place(2, 1));
+        assert_eq!(greatest([1.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.1], blocks), place(9, 7));
+        assert_eq!(greatest([0.5, 0.4, -1.0, 0.5, f32::NAN, f32::NEG_INFINITY, 0.0, 0.1], blocks), None);
+    }
 }

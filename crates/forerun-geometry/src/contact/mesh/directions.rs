@@ -6,15 +6,17 @@ use glam::Mat3;
 use super::{MOTION_AHEAD, NEAR};
 use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
+use crate::sdf::blur::Blur;
 use crate::sdf::eight::splat;
 use crate::sdf::nearest::Skin;
 use crate::sdf::primitive::{Surface, hull_planes};
+use crate::sdf::ridges::Ridges;
 use crate::shape::{Enclosure, Mesh};
 use crate::{Pose, Shape, Vec3};
 
 use super::points::{PointList, Region, RoundPoint};
 
-/// See [`Direction::inset`]; as part of half the thickness of the shape.
+/// See [`Direction::inset`]; as part of half the thickness of the thinner shape.
 const INSET_PART: f32 = 0.25;
 
 /// Which of the two directions of a pair.
@@ -39,25 +41,29 @@ pub(super) struct Direction<'a> {
     pub(super) way: Way,
     /// The points, in their own frame.
     pub(super) points: Points<'a>,
+    /// Long edges of the same shape.
+    pub(super) ridges: &'a Ridges,
     /// What they are looked up in.
     pub(super) surface: Surface<'a>,
     /// The triangles of the surface if it is a mesh.
     pub(super) skin: Option<Skin<'a>>,
-    /// By how much the surface may take edges and corners to be farther away than they are. Metres.
-    pub(super) blur: f32,
+    /// Where the field blurs the edges of the surface.
+    pub(super) blur: Option<&'a Blur>,
+    /// By how much the field may take them to be farther away than they are. Metres.
+    pub(super) blur_depth: f32,
     /// From the frame of the points to that of the field: rotation.
     pub(super) axes: Mat3,
     /// From the frame of the points to that of the field: translation. Metres.
     pub(super) origin: Vec3,
-    /// Where the field is in the world.
-    pub(super) field_pose: Pose,
+    /// Origin of the field's frame in the world. Metres.
+    pub(super) field_position: Vec3,
     /// Rotation of the field in the world.
     pub(super) field_axes: Mat3,
     /// How the points are about to move.
     pub(super) goes: Going,
     /// How the field is.
     pub(super) comes: Going,
-    /// What moves by x against the other comes nearer to it than the tangents say by up to this times x²: surfaces are bent. 1/m
+    /// What moves by x against the other comes nearer to it than tangents say by up to this times x²: surfaces are bent. 1/m
     pub(super) bend: f32,
     /// How far inside their own surface points are looked up that do not face the other one. Metres.
     pub(super) inset: f32,
@@ -85,13 +91,16 @@ pub(super) struct Going {
     drift: Vec3,
     /// Radians.
     spin: Vec3,
+    /// Length of `spin`. Radians.
+    turn: f32,
 }
 
 impl Going {
-    fn new(motion: &Motion, field: &Pose) -> Going {
-        let into_field = |v: Vec3| field.inverse_transform_vector(v) * MOTION_AHEAD;
-        let drift = motion.linear + motion.angular.cross(field.position - motion.about);
-        Going { drift: into_field(drift), spin: into_field(motion.angular) }
+    /// `at`: the origin of the field's frame. Metres.
+    fn new(motion: &Motion, at: Vec3, into_field: &Mat3) -> Going {
+        let drift = motion.linear + motion.angular.cross(at - motion.about);
+        let spin = *into_field * motion.angular * MOTION_AHEAD;
+        Going { drift: *into_field * drift * MOTION_AHEAD, spin, turn: spin.length() }
     }
 
     /// The motion of points of the field's frame. Metres.
@@ -103,7 +112,7 @@ impl Going {
     /// How far points of balls move at most: no further than the centre, and what turning about it adds. Metres.
     #[inline(always)]
     pub(super) fn at_most<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
-        self.at(centres).length() + radii * F::splat(self.spin.length())
+        self.at(centres).length() + radii * F::splat(self.turn)
     }
 }
 
@@ -143,21 +152,34 @@ pub(super) fn between<'a>(
             memory.points.fill(shape, &region, gradient);
         }
     }
-    [
-        direction([first, second], Way::There, margin, memory),
-        direction([second, first], Way::Back, margin, memory),
-    ]
+    let axes = [first.pose.axes(), second.pose.axes()];
+    let there = direction([first, second], axes, (Way::There, margin), memory);
+    if let (Some(there), Shape::Mesh(first), Shape::Mesh(second)) = (&there, first.shape, second.shape)
+        && is_beyond(there.origin, first, second, margin)
+    {
+        return [None, None];
+    }
+    [there, direction([second, first], [axes[1], axes[0]], (Way::Back, margin), memory)]
 }
 
-/// Points of `sampled` in the field of `field`; none if `sampled` has no points.
+/// Whether the ball around a mesh that is at `place` in the frame of another is farther than `margin` from the other's box. Metres.
+fn is_beyond(place: Vec3, ball: &Mesh, other: &Mesh, margin: f32) -> bool {
+    let bounds = other.bounds();
+    let reach = ball.collider().radius + margin;
+    let offset = (bounds.min - place).max(place - bounds.max).max(Vec3::ZERO);
+    // A little more, for what rounding may lose.
+    offset.length_squared() > reach * reach * 1.0001
+}
+
+/// Points of `sampled` in the field of `field`, whose axes in the world are given; none if `sampled` has no points.
 fn direction<'a>(
     [sampled, field]: [&Placed<'a>; 2],
-    way: Way,
-    margin: f32,
+    [sampled_axes, field_axes]: [Mat3; 2],
+    (way, margin): (Way, f32),
     memory: &'a Primitives,
 ) -> Option<Direction<'a>> {
-    let points = match (sampled.shape, field.shape) {
-        (Shape::Mesh(mesh), _) => Points::Sharp(&mesh.collider().samples),
+    let (points, ridges) = match sampled.shape {
+        Shape::Mesh(mesh) => (Points::Sharp(&mesh.collider().samples), &mesh.collider().ridges),
         _ => memory.points.points()?,
     };
     let surface = match field.shape {
@@ -167,25 +189,28 @@ fn direction<'a>(
     // The triangles of a mended mesh do not tell its sides.
     let (skin, blur) = match field.shape {
         Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
-            (Some(Skin::of(mesh)), mesh.collider().blur)
+            (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.is_any()))
         }
-        _ => (None, 0.0),
+        _ => (None, None),
     };
-    let to_field = field.pose.inverse() * sampled.pose;
+    let into_field = field_axes.transpose();
+    let at = field.pose.position;
     Some(Direction {
         way,
         points,
+        ridges,
         surface,
         skin,
         blur,
-        axes: to_field.axes(),
-        origin: to_field.position,
-        field_pose: field.pose,
-        field_axes: field.pose.axes(),
-        goes: Going::new(&sampled.motion, &field.pose),
-        comes: Going::new(&field.motion, &field.pose),
-        bend: bend(sampled.shape) + bend(field.shape),
-        inset: INSET_PART * sampled.shape.half_thickness(),
+        blur_depth: blur.map_or(0.0, |b| b.depth),
+        axes: into_field * sampled_axes,
+        origin: into_field * (sampled.pose.position - at),
+        field_position: at,
+        field_axes,
+        goes: Going::new(&sampled.motion, at, &into_field),
+        comes: Going::new(&field.motion, at, &into_field),
+        bend: bend(sampled.shape, field.shape),
+        inset: INSET_PART * sampled.shape.half_thickness().min(field.shape.half_thickness()),
         near: NEAR.min(margin),
         margin,
     })
@@ -212,10 +237,14 @@ fn primitive_surface<'a>(shape: &Shape, planes: &'a [(Vec3, f32)]) -> Option<Sur
     })
 }
 
-/// See [`Direction::bend`]: half of one over the radius of the bends that matter, taken to be that of the mesh. What primitives there are is convex, and flat
-/// enough: what moves past comes no nearer than their tangents say.
-fn bend(shape: &Shape) -> f32 {
-    if let Shape::Mesh(mesh) = shape { 0.5 / mesh.collider().radius } else { 0.0 }
+/// See [`Direction::bend`]: half of one over the radius of the bends that matter, for each of two meshes taken to be its own. Beside what is flat or convex
+/// tangents tell the truth, but for turns.
+fn bend(sampled: &Shape, field: &Shape) -> f32 {
+    let of = |mesh: &Mesh| 0.5 / mesh.collider().radius;
+    match (sampled, field) {
+        (Shape::Mesh(sampled), Shape::Mesh(field)) => of(sampled) + of(field),
+        _ => 0.0,
+    }
 }
 
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.

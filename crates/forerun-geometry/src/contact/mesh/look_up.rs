@@ -5,9 +5,11 @@ use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched};
 use super::candidates::{Block, Candidates};
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
+use super::ridges::Crossings;
+use super::sharp::Answer;
 use crate::Vec3;
 use crate::sdf::eight::{normalized, of_vectors, splat, transformed};
-use crate::sdf::primitive::Surface;
+use crate::sdf::primitive::{LookUp, Surface};
 use crate::sdf::samples::Spheres;
 use crate::sdf::{Sample, Samples};
 
@@ -25,15 +27,15 @@ const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
 const BESIDE: f32 = 0.005;
 
 /// Points with their outward normals, in the field's frame.
-struct Eight<F> {
-    points: V8<F>,
-    outwards: V8<F>,
+pub(super) struct Eight<F> {
+    pub(super) points: V8<F>,
+    pub(super) outwards: V8<F>,
     /// See [`Sample::facing_max`](crate::sdf::Sample::facing_max).
-    facing_max: F,
+    pub(super) facing_max: F,
 }
 
 /// What the field says to them.
-struct Answers<F> {
+pub(super) struct Answers<F> {
     distance: F,
     normal: V8<F>,
     /// The bits of the points that are candidates.
@@ -42,11 +44,39 @@ struct Answers<F> {
     doubtful: u32,
 }
 
+impl<F: Lanes> Answers<F> {
+    /// Doubts some of what was found; puts what is known of crossings in the place of what the surface says.
+    #[inline(always)]
+    pub(super) fn amend(&mut self, doubted: u32, crossings: Option<&Crossings>) {
+        self.doubtful |= doubted & self.found;
+        if let Some(crossings) = crossings {
+            let known = F::Mask::from_bits(crossings.known);
+            self.distance = known.select(F::from_array(crossings.distance), self.distance);
+            self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
+            self.doubtful &= !crossings.known;
+        }
+    }
+}
+
+/// What is asked about eight points, and what the surface says to them at first.
+pub(super) struct Query<'a, F> {
+    /// Distances and gradients.
+    pub(super) told: (F, V8<F>),
+    /// The bits of the points that are meant.
+    pub(super) meant: u32,
+    /// The bits of those that are to be doubted.
+    pub(super) doubted: u32,
+    /// What is known better of crossings of edges.
+    pub(super) crossings: Option<&'a Crossings>,
+}
+
 /// Appends the points of the direction that are near the surface, or will be at the end of the step.
 pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
-    match direction.points {
-        Points::Sharp(samples) => find_sharp(direction, samples, candidates),
-        Points::Round(balls) => {
+    match (direction.points, &direction.surface) {
+        // Fields have a form of their own: they are what most is looked up in.
+        (Points::Sharp(samples), Surface::Field(field)) => find_sharp(direction, *field, samples, candidates),
+        (Points::Sharp(samples), surface) => find_sharp(direction, surface, samples, candidates),
+        (Points::Round(balls), _) => {
             for chunk in balls.chunks(LANES) {
                 find_round(direction, chunk, candidates);
             }
@@ -55,45 +85,53 @@ pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
 }
 
 dispatched! {
-    fn find_sharp(direction: &Direction, samples: &Samples, candidates: &mut Candidates) => find_sharp_lanes
+    fn find_sharp<S: LookUp>(
+        direction: &Direction,
+        surface: &S,
+        samples: &Samples,
+        candidates: &mut Candidates,
+    ) => find_sharp_lanes
 }
 
 #[inline(always)]
-fn find_sharp_lanes<F: Lanes>(direction: &Direction, samples: &Samples, candidates: &mut Candidates) {
+fn find_sharp_lanes<F: Lanes, S: LookUp>(
+    direction: &Direction,
+    surface: &S,
+    samples: &Samples,
+    candidates: &mut Candidates,
+) {
     let Candidates { blocks, leaves, nodes } = candidates;
-    cull::<F>(direction, samples, nodes, leaves);
+    cull::<F, S>(direction, surface, samples, (nodes, leaves));
     for &leaf in &*leaves {
         let (leaf, meant) = samples.leaf(leaf as usize);
-        let eight = Eight::<F> {
-            points: transformed(leaf.points.form(), &direction.axes, direction.origin),
-            outwards: transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO),
-            facing_max: F::from_array(leaf.facing_max.to_array()),
-        };
-        let mut there = direction.meet(&eight, 0.0, meant);
-        if there.doubtful != 0 && direction.inset > 0.0 {
-            let mut inside = direction.meet(&eight, direction.inset, there.doubtful);
-            // Better than an answer that is good enough is only one without doubt.
-            inside.found &= !inside.doubtful | !there.found;
-            there.found &= !inside.found;
-            direction.push(&eight, &inside, 0, blocks);
-        }
-        direction.push(&eight, &there, there.found, blocks);
+        let points = transformed::<F>(leaf.points.form(), &direction.axes, direction.origin);
+        let limit = direction.margin + direction.blur_depth;
+        let Some(told) = surface.look_up_near(points, meant, limit) else { continue };
+        let outwards = transformed(leaf.normals.form(), &direction.axes, Vec3::ZERO);
+        let eight = Eight { points, outwards, facing_max: F::from_array(leaf.facing_max.to_array()) };
+        direction.find_eight(surface, &eight, &Query { told, meant, doubted: 0, crossings: None }, blocks);
     }
 }
 
-/// Fills `leaves` with the leaves that may hold points that count.
+/// Fills the second list with the leaves that may hold points that count, by way of the first.
 #[inline(always)]
-fn cull<F: Lanes>(direction: &Direction, samples: &Samples, nodes: &mut Vec<u32>, leaves: &mut Vec<u32>) {
+fn cull<F: Lanes, S: LookUp>(
+    direction: &Direction,
+    surface: &S,
+    samples: &Samples,
+    (nodes, leaves): (&mut Vec<u32>, &mut Vec<u32>),
+) {
     nodes.clear();
     if samples.node_spheres().is_empty() {
         nodes.extend(0..samples.leaf_spheres().len() as u32);
     }
     for (block, spheres) in samples.node_spheres().iter().enumerate() {
-        push_bits(block, direction.near::<F>(spheres), nodes);
+        push_bits(block, direction.near::<F, S>(surface, spheres), nodes);
     }
     leaves.clear();
     for &node in &*nodes {
-        push_bits(node as usize, direction.near::<F>(&samples.leaf_spheres()[node as usize]), leaves);
+        let spheres = &samples.leaf_spheres()[node as usize];
+        push_bits(node as usize, direction.near::<F, S>(surface, spheres), leaves);
     }
 }
 
@@ -107,28 +145,52 @@ fn push_bits(block: usize, mut bits: u32, list: &mut Vec<u32>) {
 }
 
 impl Direction<'_> {
-    /// What the field says to some of eight points, asked `inset` metres further inside their own surface.
-    ///
-    /// There the face that the points have come through is the nearest one even for the corners of a box that stands
-    /// exactly on another of the same size. The answer is carried back to the points along the normal found.
+    /// Appends those of eight points that are meant and near, crossings of edges as they say themselves.
     #[inline(always)]
-    fn meet<F: Lanes>(&self, eight: &Eight<F>, inset: f32, asked: u32) -> Answers<F> {
-        let back = eight.outwards * F::splat(inset);
-        let (distance, gradient) = self.answer(eight.points - back, asked, inset);
+    pub(super) fn find_eight<F: Lanes, S: LookUp>(
+        &self,
+        surface: &S,
+        eight: &Eight<F>,
+        query: &Query<F>,
+        blocks: &mut Vec<Block>,
+    ) {
+        let answer = self.sharpened(eight.points, query.told, query.meant);
+        let mut there = self.judge(eight, answer, V8::zero(), query.meant);
+        there.doubtful |= query.doubted & there.found;
+        if let Some(crossings) = query.crossings {
+            there.put(crossings);
+        }
+        if there.doubtful != 0 && self.inset > 0.0 {
+            // Further inside their own surface the face that the points have come through is the nearest one even for
+            // the corners of a box that stands exactly on another of the same size.
+            let back = eight.outwards * F::splat(self.inset);
+            let answer = self.answer_inside(surface, eight, back, there.doubtful);
+            let mut inside = self.judge(eight, answer, back, there.doubtful);
+            // Better than an answer that is good enough is only one without doubt.
+            inside.found &= !inside.doubtful | !there.found;
+            there.found &= !inside.found;
+            self.push(eight, &inside, 0, blocks);
+        }
+        let rough = if self.blur.is_some() { 0 } else { there.found };
+        self.push(eight, &there, rough, blocks);
+    }
+
+    /// What is to be made of the answers of the field to some of eight points, given `back` (metres) from them. The answers are carried
+    /// to the points along the normals found.
+    #[inline(always)]
+    fn judge<F: Lanes>(&self, eight: &Eight<F>, answer: Answer<F>, back: V8<F>, asked: u32) -> Answers<F> {
+        let Answer { distance, gradient, beside } = answer;
         let normal = normalized(gradient);
         let distance = distance + normal.dot(back);
-        let near = asked & distance.lt(F::splat(self.margin)).bits();
-        if near == 0 {
-            return Answers { distance, normal, found: 0, doubtful: 0 };
-        }
         let closing = self.closing_at(eight.points, normal);
         let facing = normal.dot(eight.outwards);
+        let near = distance.lt(F::splat(self.margin));
         let found = facing.lt(eight.facing_max)
             & (distance + closing).lt(F::splat(self.near))
             & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
         let well = facing.lt(F::splat(FACING_WELL)).bits();
-        let doubtful = near & distance.lt(F::splat(BESIDE)).bits() & !well;
-        Answers { distance, normal, found: near & found.bits(), doubtful }
+        let doubtful = (near & distance.lt(F::splat(BESIDE))).bits() & asked & (beside | !well);
+        Answers { distance, normal, found: (near & found).bits() & asked, doubtful }
     }
 
     /// Appends what was found; `rough`: the bits of those whose normal is that of the field at the point itself.
@@ -142,7 +204,7 @@ impl Direction<'_> {
             // What lies on a plane is pushed off it at a right angle, whatever interpolation says of its rim.
             let flat = eight.facing_max.le(F::splat(FLAT_MAX));
             normal = flat.select_v(-eight.outwards, normal);
-            rough &= if self.blur > 0.0 { 0 } else { !flat.bits() };
+            rough &= !flat.bits();
         }
         let found = F::Mask::from_bits(answers.found);
         let midpoint = eight.points - normal * (F::splat(0.5) * answers.distance);
@@ -150,7 +212,7 @@ impl Direction<'_> {
         let in_world = transformed(normal, &self.field_axes, Vec3::ZERO) * F::splat(self.sign());
         blocks.push(Block {
             point: eight.points.form(),
-            position: transformed(midpoint, &self.field_axes, self.field_pose.position).form(),
+            position: transformed(midpoint, &self.field_axes, self.field_position).form(),
             normal: in_world.form(),
             separation: Portable::from_array(answers.distance.to_array()),
             left: Portable::from_array(left.to_array()),
@@ -161,11 +223,11 @@ impl Direction<'_> {
 
     /// The bits of the spheres that may hold points that count.
     #[inline(always)]
-    fn near<F: Lanes>(&self, spheres: &Spheres) -> u32 {
+    pub(super) fn near<F: Lanes, S: LookUp>(&self, surface: &S, spheres: &Spheres) -> u32 {
         let radii = F::from_array(spheres.radius.to_array());
         let centres = transformed(spheres.centre.form::<F>(), &self.axes, self.origin);
-        let near = self.reach(centres, radii) + F::splat(self.blur);
-        (self.surface.lower_bound(centres) - radii).lt(near).bits()
+        let near = self.reach(centres, radii) + F::splat(self.blur_depth);
+        (surface.lower_bound(centres) - radii).lt(near).bits()
     }
 
     /// How near to the surface points of balls must be to count. Metres.
@@ -187,9 +249,10 @@ impl Direction<'_> {
     }
 
     /// The normal in the world of a point with the given gradient, and the point half of `way` (metres) against the gradient from it.
+    #[inline]
     pub(super) fn to_world(&self, point: Vec3, gradient: Vec3, way: f32) -> (Vec3, Vec3) {
         let midpoint = point - gradient * (0.5 * way);
-        let position = self.field_axes * midpoint + self.field_pose.position;
+        let position = self.field_axes * midpoint + self.field_position;
         (self.field_axes * gradient * self.sign(), position)
     }
 }
@@ -201,7 +264,7 @@ fn find_round(direction: &Direction, balls: &[RoundPoint], candidates: &mut Cand
         (centres[i], radii[i]) = (ball.centre, ball.radius);
     }
     let spheres = Spheres { centre: of_vectors(&centres), radius: Portable::from_array(radii) };
-    let mut near = direction.near::<Portable>(&spheres);
+    let mut near = direction.near::<Portable, _>(&direction.surface, &spheres);
     let (mut points, mut normals, mut positions) = (centres, [Vec3::ZERO; LANES], [Vec3::ZERO; LANES]);
     let (mut separations, mut found) = ([f32::INFINITY; LANES], false);
     let mut guess = None;

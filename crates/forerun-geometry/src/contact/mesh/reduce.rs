@@ -7,7 +7,7 @@ use forerun_lanes::{LaneMask, Lanes, Portable, dispatched};
 
 use super::candidates::{Candidate, Candidates, Place, first_greatest};
 use super::directions::Direction;
-use super::smooth::{Taps, smooth};
+use super::smooth::smooth;
 use crate::Vec3;
 use crate::contact::{ContactPoint, Manifold};
 use crate::sdf::eight::{lane, splat};
@@ -35,7 +35,8 @@ pub(super) struct Reduction {
     chosen: Vec<Candidate>,
     /// Where each side begins in `chosen`.
     starts: Vec<usize>,
-    taps: Taps,
+    /// Those of the chosen whose normals are smoothed, by their places in the list.
+    rough: Vec<u32>,
 }
 
 /// Of a block of candidates those that belong to a side.
@@ -63,7 +64,7 @@ pub(super) fn reduce(
     // The far side of a fast ring that comes in tilted is shallow now and deep at the end of the step.
     let far_penalty = directions.iter().flatten().next().map_or(0.0, |d| DEPTH_PENALTY * d.near / d.margin);
     choose_points(candidates, far_penalty, memory);
-    smooth(&mut memory.chosen, directions, &mut memory.taps);
+    smooth(&mut memory.chosen, directions, &mut memory.rough);
     for (i, &start) in memory.starts.iter().enumerate() {
         let end = memory.starts.get(i + 1).copied().unwrap_or(memory.chosen.len());
         emit(&memory.chosen[start..end], out);
@@ -141,7 +142,7 @@ fn farthest<F: Lanes>(
         best = better.select(score, best);
         at = better.select(F::splat(member.block as f32), at);
     }
-    first_greatest(best.to_array(), at.to_array(), SAME_POINT)
+    first_greatest(best, at, SAME_POINT)
 }
 
 /// One manifold of up to four points, or two that share the points in turn.

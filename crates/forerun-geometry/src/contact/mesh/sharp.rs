@@ -1,56 +1,150 @@
 //! Sharp: distances at edges and corners, where a grid blurs them.
 //!
-//! Between its nodes a grid takes the mean of the sides of an edge, which cuts the edge off: by a third of a cell where
-//! the edge is askew to the grid. Corners of two stones that touch would not. Round surfaces, and edges along the sides
-//! of the grid, are met exactly; the fields of others are asked only who is near, and their triangles how near.
+//! See [`Blur`]: the corners of two stones that touch would not. There the grid is asked only who is near, and the
+//! triangles how near.
 
-use forerun_lanes::{LANES, LaneMask, Lanes, V8};
+use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
 
 use super::directions::Direction;
+use super::look_up::Eight;
 use crate::Vec3;
-use crate::sdf::eight::of_vectors;
+use crate::sdf::blur::Blur;
+use crate::sdf::eight::{lane, of_vectors};
+use crate::sdf::nearest::Nearest;
+use crate::sdf::primitive::{LookUp, Surface};
+
+/// Unit vectors whose largest part is less than this are along no axis: off the sides of a box.
+const AXIS: f32 = 0.999_99;
+
+/// What a surface says to eight points.
+pub(super) struct Answer<F> {
+    /// Metres.
+    pub(super) distance: F,
+    /// Not quite unit.
+    pub(super) gradient: V8<F>,
+    /// The bits of points to which a sharp edge or a corner is nearest.
+    pub(super) beside: u32,
+}
+
+/// What triangles say to some of eight points.
+struct Exact {
+    distance: [f32; LANES],
+    gradient: [Vec3; LANES],
+    /// The bits of the points.
+    known: u32,
+    /// See [`Answer::beside`].
+    beside: u32,
+}
 
 impl Direction<'_> {
-    /// Distances and gradients at eight points of the field's frame, good where they are `asked` and, but for `more`
-    /// metres, near.
+    /// What the surface says of eight points of the field's frame, better where it is blurred: good where they are
+    /// `asked` for and near.
     #[inline(always)]
-    pub(super) fn answer<F: Lanes>(&self, points: V8<F>, asked: u32, more: f32) -> (F, V8<F>) {
-        let (distance, gradient) = self.surface.look_up(points);
-        if self.blur == 0.0 {
-            return (distance, gradient);
-        }
-        let reach = self.reach(points, F::zero()) + F::splat(self.blur + more);
-        let asked = asked & distance.lt(reach).bits();
-        let mut exact = Exact { distances: distance.to_array(), gradients: vectors(gradient) };
-        self.sharpen(&vectors(points), asked, &mut exact);
-        (F::from_array(exact.distances), of_vectors(&exact.gradients).form())
+    pub(super) fn answer<F: Lanes>(&self, points: V8<F>, asked: u32) -> Answer<F> {
+        self.sharpened(points, self.surface.look_up_some(points, asked), asked)
     }
 
-    /// Puts the exact answers in the place of some.
+    /// What the surface `told`, made good beside sharp edges.
+    #[inline(always)]
+    pub(super) fn sharpened<F: Lanes>(&self, points: V8<F>, told: (F, V8<F>), asked: u32) -> Answer<F> {
+        let (distance, gradient) = told;
+        let mut answer = Answer { distance, gradient, beside: 0 };
+        if let Some(blur) = self.blur {
+            let reach = self.reach(points, F::zero()) + F::splat(self.blur_depth);
+            let near = asked & distance.lt(reach).bits();
+            if near != 0 {
+                answer = answer.but_for(&self.sharp(blur, &points.form(), near));
+            }
+        }
+        if let Surface::Cuboid(_) = self.surface {
+            let [x, y, z] = [gradient.x.abs(), gradient.y.abs(), gradient.z.abs()];
+            answer.beside = x.max(y).max(z).lt(F::splat(AXIS)).bits();
+        }
+        answer
+    }
+
+    /// Asks about points that lie `back` inside the surface that they are of: next to an edge or corner the side is
+    /// meant that faces them best.
+    #[inline(always)]
+    pub(super) fn answer_inside<F: Lanes, S: LookUp>(
+        &self,
+        surface: &S,
+        eight: &Eight<F>,
+        back: V8<F>,
+        asked: u32,
+    ) -> Answer<F> {
+        let points = eight.points - back;
+        let (distance, gradient) = surface.look_up_some(points, asked);
+        let answer = Answer { distance, gradient, beside: 0 };
+        match self.blur {
+            Some(blur) => answer.but_for(&self.facing(blur, [&points.form(), &eight.outwards.form()], asked)),
+            None => answer,
+        }
+    }
+
     #[inline(never)]
-    fn sharpen(&self, points: &[Vec3; LANES], mut asked: u32, exact: &mut Exact) {
-        let mut guess = None;
-        while asked != 0 {
-            let i = asked.trailing_zeros() as usize;
-            asked &= asked - 1;
-            let (distance, gradient) = self.surface.exact(points[i], self.skin.as_ref(), &mut guess);
-            (exact.distances[i], exact.gradients[i]) = (distance, gradient);
+    fn sharp(&self, blur: &Blur, points: &V8<Portable>, asked: u32) -> Exact {
+        let mut exact = Exact::NOTHING;
+        let Some(skin) = &self.skin else { return exact };
+        self.in_the_blur(blur, points, asked, |i, point, nearest| {
+            let signed = skin.signed(point.as_dvec3(), nearest);
+            exact.tell(i, signed.distance as f32, signed.gradient);
+            exact.beside |= u32::from(!nearest.is_on_face()) << i;
+        });
+        exact
+    }
+
+    #[inline(never)]
+    fn facing(&self, blur: &Blur, [points, outwards]: [&V8<Portable>; 2], asked: u32) -> Exact {
+        let mut exact = Exact::NOTHING;
+        let Some(skin) = &self.skin else { return exact };
+        self.in_the_blur(blur, points, asked, |i, point, nearest| {
+            let (distance, normal) = skin.facing(point.as_dvec3(), nearest, lane(outwards, i).as_dvec3());
+            exact.tell(i, distance, normal);
+        });
+        exact
+    }
+
+    /// Finds what is nearest to those of some points where the field is blurred.
+    fn in_the_blur(
+        &self,
+        blur: &Blur,
+        points: &V8<Portable>,
+        asked: u32,
+        mut tell: impl FnMut(usize, Vec3, &Nearest),
+    ) {
+        let (Surface::Field(field), Some(skin)) = (&self.surface, &self.skin) else { return };
+        let mut guess: Option<Nearest> = None;
+        for i in (0..LANES).filter(|i| asked >> i & 1 == 1) {
+            let point = lane(points, i);
+            if blur.is_at(field, point) {
+                let nearest = skin.nearest(point.as_dvec3(), guess.as_ref());
+                tell(i, point, &nearest);
+                guess = Some(nearest);
+            }
         }
     }
 }
 
-/// Eight answers, one by one.
-struct Exact {
-    distances: [f32; LANES],
-    gradients: [Vec3; LANES],
+impl Exact {
+    const NOTHING: Exact =
+        Exact { distance: [0.0; LANES], gradient: [Vec3::ZERO; LANES], known: 0, beside: 0 };
+
+    fn tell(&mut self, i: usize, distance: f32, gradient: Vec3) {
+        (self.distance[i], self.gradient[i]) = (distance, gradient);
+        self.known |= 1 << i;
+    }
 }
 
-#[inline(always)]
-fn vectors<F: Lanes>(v: V8<F>) -> [Vec3; LANES] {
-    let (x, y, z) = (v.x.to_array(), v.y.to_array(), v.z.to_array());
-    let mut out = [Vec3::ZERO; LANES];
-    for i in 0..LANES {
-        out[i] = Vec3::new(x[i], y[i], z[i]);
+impl<F: Lanes> Answer<F> {
+    /// Better answers in the place of some.
+    #[inline(always)]
+    fn but_for(self, exact: &Exact) -> Answer<F> {
+        let known = F::Mask::from_bits(exact.known);
+        Answer {
+            distance: known.select(F::from_array(exact.distance), self.distance),
+            gradient: known.select_v(of_vectors(&exact.gradient).form(), self.gradient),
+            beside: self.beside | exact.beside,
+        }
     }
-    out
 }
