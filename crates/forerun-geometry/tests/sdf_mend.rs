@@ -80,7 +80,7 @@ fn flipped_faces_are_turned() {
     let whole = meshes::torus(0.5, 0.2, 48, 16);
     let mut flipped = whole.clone();
     for triangle in flipped.1.iter_mut().step_by(7) {
-        triangle.swap(0, 1);
+        triangle.swap(1, 2);
     }
     let count = whole.1.len().div_ceil(7) as u32;
     let mesh = mesh(&flipped);

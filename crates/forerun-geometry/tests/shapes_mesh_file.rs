@@ -123,6 +123,11 @@ fn errors_name_file_place_and_remedy() {
     let path = file("cut.obj", &text[..text.len() - 30]);
     let error = load_mesh(&path, scaled(1.0)).unwrap_err();
     assert!(matches!(error.problem, MeshFileProblem::Parse(_) | MeshFileProblem::Mesh(_)), "{error}");
+    let path = file("mended.obj", text.rsplit_once("\nf").unwrap().0);
+    assert_eq!(load_mesh(&path, scaled(1.0)).unwrap().repairs.hole_edges, 3);
+    assert!(!load_open_mesh(&path, scaled(1.0)).unwrap().has_inside());
+    // A twelfth of the surface is too much to be covered.
+    let text = as_obj(&mesh_make::cuboid(Vec3::splat(0.5)).unwrap());
     let path = file("holed.obj", text.rsplit_once("\nf").unwrap().0);
     let error = load_mesh(&path, scaled(1.0)).unwrap_err().to_string();
     assert!(error.contains("holed.obj: the mesh is not closed: 3 edges"), "{error}");

@@ -15,6 +15,7 @@ mod free_rotation;
 mod friction_directions;
 mod kapla;
 mod newton_chain;
+mod nut;
 mod off_centre_impact;
 mod plank;
 mod rattleback;
@@ -59,6 +60,8 @@ pub(crate) const CASES: &[Case] = &[
     short("degenerate", degenerate::run),
     short("rings", rings::run),
     short("tori", tori::run),
+    short("nut", nut::run),
+    long("nut_long", nut::run_long),
     long("kapla_long", kapla::run_long),
     long("rings_500", rings::run_500),
     long("rings_1000", rings::run_1000),

@@ -8,6 +8,7 @@
 //! Promise: a pure function of its arguments; nothing is remembered from frame to frame.
 
 use super::{Manifold, Placed};
+use crate::Shape;
 
 mod candidates;
 mod directions;
@@ -23,8 +24,17 @@ use directions::Primitives;
 use reduce::Reduction;
 
 /// Points this near to the other surface count however they move; points farther away only if they will be as near as
-/// this at the end of the step. Metres.
+/// this at the end of the step. Metres, for shapes with half a thickness of 5 cm or more.
+///
+/// All lengths that contact is found with are parts of the one that [`near`] gives for a pair: links, threads and teeth of
+/// millimetres get the same contacts as those of decimetres, only smaller.
 const NEAR: f32 = 0.02;
+/// The same for thinner shapes, as part of half the thickness of the thinner of the two: of what is farther away there is another side.
+const NEAR_PART: f32 = 0.4;
+/// Points nearer to each other than this are one, and points this near to the other surface touch it. As part of [`near`].
+const TOUCH_PART: f32 = 0.25;
+/// Points weigh in the mean normal by how far they are above this much more than the smallest separation. As part of [`near`].
+const WEIGHT_PART: f32 = 0.5;
 /// Motion ahead that contact is looked for in, as a multiple of the motion of the step: contacts push bodies too.
 const MOTION_AHEAD: f32 = 1.2;
 
@@ -55,4 +65,9 @@ pub(super) fn mesh_manifolds(
         ridges::find(direction, candidates);
     }
     reduce::reduce(candidates, &directions, reduction, out);
+}
+
+/// How near points of the one shape must come to the other to count. Metres.
+fn near(first: &Shape, second: &Shape, margin: f32) -> f32 {
+    NEAR.min(NEAR_PART * first.half_thickness().min(second.half_thickness())).min(margin)
 }

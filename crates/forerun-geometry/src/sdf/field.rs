@@ -73,12 +73,12 @@ impl Field {
         point.cmpge(bounds.min).all() && point.cmple(bounds.max).all()
     }
 
-    /// Number of fine cells along x, y and z.
+    /// Number of cells along x, y and z.
     pub(crate) fn cells(&self) -> [usize; 3] {
         self.size.map(|n| n - 1)
     }
 
-    /// The fine cell that a point is in; the nearest one for a point beyond the grid.
+    /// The cell that a point is in; the nearest one for a point beyond the grid.
     pub(crate) fn cell_of(&self, point: Vec3) -> [usize; 3] {
         let place = (point - self.origin) / self.cell;
         // Casts saturate, and what is not a number becomes 0.

@@ -99,21 +99,7 @@ impl LookUp for Surface<'_> {
     }
 }
 
-/// The bits of all eight points.
-const ALL: u32 = (1 << LANES) - 1;
-
 impl Surface<'_> {
-    /// [`LookUp::look_up`] where only some of eight points are asked for; the answers for the others say nothing.
-    #[inline(always)]
-    pub(crate) fn look_up_some<F: Lanes>(&self, p: V8<F>, asked: u32) -> (F, V8<F>) {
-        if let Surface::Sheet(skin, depth_limit) = self {
-            let (distance, gradient) = sheet(&p.form(), skin, *depth_limit, asked);
-            (F::from_array(distance), gradient.form())
-        } else {
-            self.look_up(p)
-        }
-    }
-
     /// Signed distance and gradient at one point; in a field from the triangles of its mesh, exact at any distance.
     /// `guess` is for the next point close by.
     pub(crate) fn exact(&self, p: Vec3, skin: Option<&Skin<'_>>, guess: &mut Option<Nearest>) -> (f32, Vec3) {

@@ -148,11 +148,11 @@ pub(super) fn meeting(_: u32) -> Scene {
 }
 
 /// A chain of interlocked rings hangs from a fixed one; its end is thrown at a heap of boxes.
-pub(super) fn chain(links: u32) -> Scene {
+pub(super) fn swing(links: u32) -> Scene {
     const RADIUS: f32 = 0.3;
     const TUBE_RADIUS: f32 = 0.08;
     let mut scene = Scene::new(
-        "chain",
+        "swing",
         "A chain of interlocked rings of 384 triangles each hangs from a fixed one and swings into a heap of boxes.",
     );
     let torus = TorusEntry { radius: RADIUS, tube_radius: TUBE_RADIUS, segments: 24, sides: 8 };
@@ -262,7 +262,7 @@ mod tests {
         // 5 x 4 bins have 6 and 5 walls.
         assert_eq!(walls(20).bodies.len(), 1 + 6 + 5 + 20 * 36);
         assert_eq!(billiard_break(4).bodies.len(), 5 + 1 + 10);
-        assert_eq!(chain(8).bodies.len(), 1 + 1 + 8 + 36);
+        assert_eq!(swing(8).bodies.len(), 1 + 1 + 8 + 36);
         assert_eq!(pile(1000).bodies.len(), 1 + 4 + 1000);
         assert_eq!(hail(500).bodies.len(), 6 + 500);
     }
@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn neighbouring_links_are_interlocked() {
-        let scene = chain(8);
+        let scene = swing(8);
         for pair in scene.bodies[1..=9].windows(2) {
             let distance = place(&pair[0]).distance(place(&pair[1]));
             // The tube of one goes through the hole of the other, without touching it.

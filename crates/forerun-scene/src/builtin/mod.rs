@@ -6,6 +6,7 @@ mod balls;
 mod dissertation;
 mod flying;
 mod groups;
+mod mechanisms;
 mod noise;
 mod parts;
 mod piles;
@@ -85,7 +86,9 @@ static BUILT_INS: &[BuiltIn] = &[
     sized("walls", (20, 1000, "piles"), "Piles with thin walls between them", groups::walls),
     sized("break", (4, 50, "rows of balls"), "A break on a billiard table", groups::billiard_break),
     single("meeting", "Two groups that meet after 5 s, and a third that never does", groups::meeting),
-    sized("chain", (8, 100, "links"), "A chain of rings swings into a heap", groups::chain),
+    sized("chain", (12, 100, "links"), "A chain of interlocked links hangs", mechanisms::chain),
+    single("nut", "A nut falls down the thread of a bolt", mechanisms::nut),
+    sized("swing", (8, 100, "links"), "A chain of rings swings into a heap", groups::swing),
     sized("mugs", (40, 1000, "mugs"), "Mugs on hooks, and as many that fall on them", toys::mugs),
     sized("bowl", (60, 1000, "things"), "Gears, jacks, knots, letters and more fall into a bowl", toys::bowl),
     sized("chairs", (50, 1000, "chairs"), "Chairs fall on a heap", toys::chairs),

@@ -17,7 +17,7 @@ const SCENES: [(&str, u32); 6] = [
     ("rings:100", 300),
     ("break", 600),
     ("large_pyramid", 40),
-    ("chain", 300),
+    ("swing", 300),
 ];
 
 pub(crate) fn run() -> Vec<Figure> {

@@ -3,7 +3,7 @@
 use forerun_lanes::{Lanes, V8};
 use glam::Mat3;
 
-use super::{MOTION_AHEAD, NEAR};
+use super::{MOTION_AHEAD, near};
 use crate::contact::{Motion, Placed};
 use crate::sdf::Samples;
 use crate::sdf::blur::Blur;
@@ -211,7 +211,7 @@ fn direction<'a>(
         comes: Going::new(&field.motion, at, &into_field),
         bend: bend(sampled.shape, field.shape),
         inset: INSET_PART * sampled.shape.half_thickness().min(field.shape.half_thickness()),
-        near: NEAR.min(margin),
+        near: near(sampled.shape, field.shape, margin),
         margin,
     })
 }

@@ -2,6 +2,7 @@
 
 use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8, dispatched};
 
+use super::TOUCH_PART;
 use super::candidates::{Block, Candidates};
 use super::directions::{Direction, Points};
 use super::points::RoundPoint;
@@ -17,14 +18,11 @@ use crate::sdf::{Sample, Samples};
 const GRADIENT_SQUARED_MIN: f32 = 0.01;
 
 /// The corners of boxes face what they stand on with a cosine of -0.58, edges and smooth surfaces better. Points that
-/// face the surface less well are asked again.
+/// face the surface less well are asked again where they touch it.
 const FACING_WELL: f32 = -0.45;
 
 /// Points whose surroundings have the same normal, but for rounding, are inside a plane.
 const FLAT_MAX: f32 = Sample::FLAT + 1e-5;
-
-/// They are if they are inside the surface, or this close to it. Metres.
-const BESIDE: f32 = 0.005;
 
 /// Points with their outward normals, in the field's frame.
 pub(super) struct Eight<F> {
@@ -35,7 +33,7 @@ pub(super) struct Eight<F> {
 }
 
 /// What the field says to them.
-pub(super) struct Answers<F> {
+struct Answers<F> {
     distance: F,
     normal: V8<F>,
     /// The bits of the points that are candidates.
@@ -45,16 +43,13 @@ pub(super) struct Answers<F> {
 }
 
 impl<F: Lanes> Answers<F> {
-    /// Doubts some of what was found; puts what is known of crossings in the place of what the surface says.
+    /// Puts what is known of crossings in the place of what the surface says.
     #[inline(always)]
-    pub(super) fn amend(&mut self, doubted: u32, crossings: Option<&Crossings>) {
-        self.doubtful |= doubted & self.found;
-        if let Some(crossings) = crossings {
-            let known = F::Mask::from_bits(crossings.known);
-            self.distance = known.select(F::from_array(crossings.distance), self.distance);
-            self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
-            self.doubtful &= !crossings.known;
-        }
+    fn put(&mut self, crossings: &Crossings) {
+        let known = F::Mask::from_bits(crossings.known);
+        self.distance = known.select(F::from_array(crossings.distance), self.distance);
+        self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
+        self.doubtful &= !crossings.known;
     }
 }
 
@@ -189,7 +184,8 @@ impl Direction<'_> {
             & (distance + closing).lt(F::splat(self.near))
             & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
         let well = facing.lt(F::splat(FACING_WELL)).bits();
-        let doubtful = (near & distance.lt(F::splat(BESIDE))).bits() & asked & (beside | !well);
+        let doubtful =
+            (near & distance.lt(F::splat(TOUCH_PART * self.near))).bits() & asked & (beside | !well);
         Answers { distance, normal, found: (near & found).bits() & asked, doubtful }
     }
 

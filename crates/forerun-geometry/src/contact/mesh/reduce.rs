@@ -8,6 +8,7 @@ use forerun_lanes::{LaneMask, Lanes, Portable, dispatched};
 use super::candidates::{Candidate, Candidates, Place, first_greatest};
 use super::directions::Direction;
 use super::smooth::smooth;
+use super::{TOUCH_PART, WEIGHT_PART};
 use crate::Vec3;
 use crate::contact::{ContactPoint, Manifold};
 use crate::sdf::eight::{lane, splat};
@@ -22,10 +23,6 @@ const SIDE_COSINE: f32 = 0.5;
 ///
 /// Without this the farthest points win, however shallow, and piles sink in and never rest.
 const DEPTH_PENALTY: f32 = 8.0;
-/// Points nearer to each other than this are one. Metres.
-const SAME_POINT: f32 = 0.005;
-/// Points weigh in the mean normal by how far they are above this much more than the smallest separation. Metres.
-const WEIGHT_BAND: f32 = 0.01;
 
 /// The memory of a reduction.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +34,15 @@ pub(super) struct Reduction {
     starts: Vec<usize>,
     /// Those of the chosen whose normals are smoothed, by their places in the list.
     rough: Vec<u32>,
+}
+
+/// How the points of a side are spread.
+#[derive(Clone, Copy, Debug)]
+struct Spread {
+    /// The penalty for depth of the second four: the far side of a fast ring that comes in tilted is shallow now and deep at the end of the step.
+    far_penalty: f32,
+    /// Points are at least so far apart. Metres.
+    apart: f32,
 }
 
 /// Of a block of candidates those that belong to a side.
@@ -61,23 +67,26 @@ pub(super) fn reduce(
     }
     memory.chosen.clear();
     memory.starts.clear();
-    // The far side of a fast ring that comes in tilted is shallow now and deep at the end of the step.
-    let far_penalty = directions.iter().flatten().next().map_or(0.0, |d| DEPTH_PENALTY * d.near / d.margin);
-    choose_points(candidates, far_penalty, memory);
+    let Some(direction) = directions.iter().flatten().next() else { return };
+    let spread = Spread {
+        far_penalty: DEPTH_PENALTY * direction.near / direction.margin,
+        apart: TOUCH_PART * direction.near,
+    };
+    choose_points(candidates, &spread, memory);
     smooth(&mut memory.chosen, directions, &mut memory.rough);
     for (i, &start) in memory.starts.iter().enumerate() {
         let end = memory.starts.get(i + 1).copied().unwrap_or(memory.chosen.len());
-        emit(&memory.chosen[start..end], out);
+        emit(&memory.chosen[start..end], WEIGHT_PART * direction.near, out);
     }
 }
 
 dispatched! {
-    /// Finds the sides and the points of each. `far_penalty` is the penalty for depth of the second four.
-    fn choose_points(candidates: &mut Candidates, far_penalty: f32, memory: &mut Reduction) => choose_points_lanes
+    /// Finds the sides and the points of each.
+    fn choose_points(candidates: &mut Candidates, spread: &Spread, memory: &mut Reduction) => choose_points_lanes
 }
 
 #[inline(always)]
-fn choose_points_lanes<F: Lanes>(candidates: &mut Candidates, far_penalty: f32, memory: &mut Reduction) {
+fn choose_points_lanes<F: Lanes>(candidates: &mut Candidates, spread: &Spread, memory: &mut Reduction) {
     let Reduction { side, chosen, starts, .. } = memory;
     for _ in 0..SIDES_MAX {
         let Some(seed) = candidates.deepest::<F>() else { return };
@@ -86,9 +95,10 @@ fn choose_points_lanes<F: Lanes>(candidates: &mut Candidates, far_penalty: f32, 
         starts.push(start);
         chosen.push(candidates.at(seed));
         while chosen.len() < start + POINTS_MAX {
-            let penalty = if chosen.len() < start + POINTS_MAX / 2 { DEPTH_PENALTY } else { far_penalty };
+            let penalty =
+                if chosen.len() < start + POINTS_MAX / 2 { DEPTH_PENALTY } else { spread.far_penalty };
             let newest = chosen[chosen.len() - 1].position;
-            let Some(place) = farthest::<F>(candidates, side, newest, penalty) else { break };
+            let Some(place) = farthest::<F>(candidates, side, newest, (penalty, spread.apart)) else { break };
             chosen.push(candidates.at(place));
         }
     }
@@ -122,16 +132,16 @@ fn take_side<F: Lanes>(candidates: &mut Candidates, seed: Place, side: &mut Vec<
 }
 
 /// The first of the members of a side that are farthest from those chosen, less a penalty for being shallow; none if
-/// all are at one of those. `newest` is the last one chosen.
+/// all are at one of those: no farther than `apart` (metres). `newest` is the last one chosen.
 #[inline(always)]
 fn farthest<F: Lanes>(
     candidates: &Candidates,
     side: &mut [Member8],
     newest: Vec3,
-    penalty: f32,
+    (penalty, apart): (f32, f32),
 ) -> Option<Place> {
     let (newest, penalty) = (splat::<F>(newest), F::splat(penalty));
-    let (mut best, mut at) = (F::splat(SAME_POINT), F::zero());
+    let (mut best, mut at) = (F::splat(apart), F::zero());
     for member in side {
         let to_newest = candidates.blocks[member.block].position.form() - newest;
         let distance_squared =
@@ -142,13 +152,14 @@ fn farthest<F: Lanes>(
         best = better.select(score, best);
         at = better.select(F::splat(member.block as f32), at);
     }
-    first_greatest(best, at, SAME_POINT)
+    first_greatest(best, at, apart)
 }
 
-/// One manifold of up to four points, or two that share the points in turn.
-fn emit(chosen: &[Candidate], out: &mut Vec<Manifold>) {
+/// One manifold of up to four points, or two that share the points in turn. Points this `band` (metres) shallower than the deepest have no weight in
+/// the mean normal.
+fn emit(chosen: &[Candidate], band: f32, out: &mut Vec<Manifold>) {
     let smallest = chosen[0].separation;
-    let weight = |c: &Candidate| (smallest + WEIGHT_BAND - c.separation).max(0.0);
+    let weight = |c: &Candidate| (smallest + band - c.separation).max(0.0);
     let sum: Vec3 = chosen.iter().map(|c| c.normal * weight(c)).sum();
     let normal = sum.try_normalize().unwrap_or(chosen[0].normal);
     let manifolds = chosen.len().div_ceil(4);

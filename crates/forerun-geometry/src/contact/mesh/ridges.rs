@@ -70,9 +70,7 @@ dispatched! {
 
 #[inline(always)]
 fn ask_lanes<F: Lanes>(direction: &Direction, points: &V8<Portable>, asked: u32, told: &mut Told) {
-    let points = points.form();
-    let answer = direction.surface.look_up_some::<F>(points, asked);
-    let Answer { distance, gradient, .. } = direction.sharpened(points, answer, asked);
+    let Answer { distance, gradient, .. } = direction.answer::<F>(points.form(), asked);
     *told = Told { distance: distance.to_array(), gradient: gradient.form() };
 }
 

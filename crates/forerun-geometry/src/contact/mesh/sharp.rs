@@ -37,8 +37,8 @@ struct Exact {
 }
 
 impl Direction<'_> {
-    /// What the surface says of eight points of the field's frame, better where it is blurred: good where they are
-    /// `asked` for and near.
+    /// Asks the surface about eight points of the field's frame: the answers are good where they are `asked` for and
+    /// near.
     #[inline(always)]
     pub(super) fn answer<F: Lanes>(&self, points: V8<F>, asked: u32) -> Answer<F> {
         self.sharpened(points, self.surface.look_up_some(points, asked), asked)
