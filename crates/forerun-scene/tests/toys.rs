@@ -15,9 +15,9 @@ fn start(scene: &str) -> World {
 }
 
 fn step(world: &mut World, frames: u32) {
-    (0..frames).for_each(|_| {
+    for _ in 0..frames {
         world.step(&mut Unobserved);
-    });
+    }
 }
 
 #[test]
