@@ -19,10 +19,6 @@ use super::points::{PointList, Region, RoundPoint};
 /// See [`Direction::inset`]; as part of half the thickness of the thinner shape.
 const INSET_PART: f32 = 0.25;
 
-/// Edges that a field takes to be farther away than they are by up to this part of what counts as near are left to it: they touch all the same, and its triangles
-/// take ten times as long to ask.
-const BLUR_PART: f32 = 0.25;
-
 /// Which of the two directions of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
@@ -202,7 +198,7 @@ fn direction<'a>(
     // The triangles of a mended mesh do not tell its sides.
     let (skin, blur) = match field.shape {
         Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
-            (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.depth > BLUR_PART * near))
+            (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.is_any()))
         }
         _ => (None, None),
     };
