@@ -57,8 +57,6 @@ const OVERLOADED: &str = "the set-up cannot stand: by a linear program over all 
      until it has found a shape that holds";
 const GAPS: &str = "free fall while the gaps that it starts with close, as far as is known";
 const FAST: &str = "the box goes 0.6 m in a frame of 1/60; at 1/240 it holds";
-const WEDGED: &str = "the head stops the fall and the thread, at a slope of 1 in 19, has to stop the turn: 19 times the force, which the sweeps of one frame do not \
-     find; rests as it is";
 
 const FACETS_INSIDE: &str = "overlaps are measured between tori, and the meshes lie inside of them: by up to 11 mm (rings) and 5 mm (tori) where two facets face each \
      other's; besides, the rims of poles are looked up in 8 points, and cut into rings between them";
@@ -80,17 +78,18 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("block_on_slope", "(c) 1/1000: hop, m", 0.4143, TIPS),
     miss("block_on_slope", "(c) 1/1000: tilt, degrees", 159.6, TIPS),
     miss("rolling_plate", "at 60°: the same against the target, m²/s²", 2.019e-06, ROUNDS_PLATE),
-    miss("rolling_down", "mesh sphere, 4.5°, 1/240: fall off, part", 0.1797, FACETS),
-    miss("rolling_down", "mesh sphere, 9°, 1/240: fall off, part", 0.1532, FACETS),
-    miss("rolling_down", "mesh sphere, 18°, 1/240: fall off, part", 0.1017, FACETS),
-    miss("rolling_down", "mesh sphere, 18°, 1/240: slip, part", 0.04385, FACETS),
+    miss("rolling_down", "mesh sphere, 4.5°, 1/240: fall off, part", 0.181, FACETS),
+    miss("rolling_down", "mesh sphere, 9°, 1/240: fall off, part", 0.1533, FACETS),
+    miss("rolling_down", "mesh sphere, 9°, 1/240: slip, part", 0.02138, FACETS),
+    miss("rolling_down", "mesh sphere, 18°, 1/240: fall off, part", 0.1062, FACETS),
+    miss("rolling_down", "mesh sphere, 18°, 1/240: slip, part", 0.04932, FACETS),
     miss("friction_directions", "(b) drift of the centre, m", 0.06438, FROZEN_ARMS),
     miss("free_rotation", "(a) intermediate axis, 1/1000: flips", 5.0, ROUNDS),
     miss("free_rotation", "(a) intermediate axis, 1/1000: worst interval off, part", 0.1489, ROUNDS),
     miss("spinning_ball", "mesh sphere, friction 0.8, 1/240: rebound off, part", 0.05982, FACETS_BOUNCE),
     miss("spinning_ball", "mesh sphere, friction 0.05, 1/240: rebound off, part", 0.05982, FACETS_BOUNCE),
-    miss("rattleback", "-5 rad/s: time of the reversal, s", 0.5, TWO_MANIFOLDS),
-    miss("rattleback", "5 rad/s: least spin up to 4 s, rad/s", -0.0003083, TWO_MANIFOLDS),
+    miss("rattleback", "-5 rad/s: time of the reversal, s", 0.75, TWO_MANIFOLDS),
+    miss("rattleback", "5 rad/s: least spin up to 4 s, rad/s", -0.00003196, TWO_MANIFOLDS),
     miss("turntable", "friction 0.1, 1/60: spin at which it has slipped by 1 mm, rad/s", 0.4983, FROZEN_ARMS),
     miss("turntable", "friction 0.5, 1/60: spin at which it has slipped by 1 mm, rad/s", 0.4983, FROZEN_ARMS),
     miss("turntable", "friction 1, 1/60: spin at which it has slipped by 1 mm, rad/s", 0.4983, FROZEN_ARMS),
@@ -101,21 +100,15 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("towers", "(b) 30 layers of planks: deepest overlap at the end, m", 0.002201, RESTS_DEEP),
     miss("card_house", "1/240: fastest card ever, m/s", 0.5723, GAPS),
     miss("arch", "hulls: most slip between two neighbours, m", 0.07289, OVERLOADED),
-    miss("arch", "meshes: most slip between two neighbours, m", 0.09131, OVERLOADED),
+    miss("arch", "meshes: most slip between two neighbours, m", 0.1098, OVERLOADED),
     miss("plank", "1/60: deepest overlap at the impact, m", 0.4834, FAST),
     miss("plank", "1/60: deepest overlap otherwise, m", 0.09379, FAST),
-    miss("rings", "100 rings: deepest overlap at rest, part of the tube's radius", 0.05931, FACETS_INSIDE),
+    miss("rings", "100 rings: deepest overlap at rest, part of the tube's radius", 0.05609, FACETS_INSIDE),
     miss(
         "rings",
         "100 rings: 99th percentile of overlaps at rest, part of the tube's radius",
-        0.04538,
+        0.05533,
         FACETS_INSIDE,
     ),
-    miss("tori", "50 tori, 3 ways: deepest overlap at rest, m", 0.009255, FACETS_INSIDE),
-    miss(
-        "nut",
-        "cells of 1.10 mm, 1/100: deepest overlap with the head on the nut, depths of the thread",
-        0.1895,
-        WEDGED,
-    ),
+    miss("tori", "50 tori, 3 ways: deepest overlap at rest, m", 0.01021, FACETS_INSIDE),
 ];
