@@ -16,15 +16,6 @@ pub(crate) struct TriangleTree {
     order: Vec<u32>,
 }
 
-/// What a node of the tree is made of.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum TreeNode<'a> {
-    /// Triangles.
-    Leaf(&'a [u32]),
-    /// Two nodes.
-    Inner([usize; 2]),
-}
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
     bounds: Aabb,
@@ -70,46 +61,6 @@ impl TriangleTree {
         let second = self.build(bounds, from + half, to);
         self.nodes[index] = Node { bounds: around, link: second, count: 0 };
         index as u32
-    }
-
-    /// Number of nodes. Children come after their parents; node 0 is the root.
-    pub(crate) fn len(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// The box around all triangles of a node.
-    pub(crate) fn bounds(&self, node: usize) -> Aabb {
-        self.nodes[node].bounds
-    }
-
-    /// What a node is made of.
-    pub(crate) fn node(&self, index: usize) -> TreeNode<'_> {
-        let node = &self.nodes[index];
-        if node.count > 0 {
-            TreeNode::Leaf(&self.order[node.link as usize..][..node.count as usize])
-        } else {
-            TreeNode::Inner([index + 1, node.link as usize])
-        }
-    }
-
-    /// Calls `leaf` with the triangles of each leaf that `enter` lets one get to through all nodes above, in the order of the tree.
-    pub(crate) fn descend(&self, mut enter: impl FnMut(usize) -> bool, mut leaf: impl FnMut(&[u32])) {
-        let mut stack = [0; DEEPEST];
-        let mut height = 1;
-        while height > 0 {
-            height -= 1;
-            let index = stack[height];
-            if !enter(index) {
-                continue;
-            }
-            match self.node(index) {
-                TreeNode::Leaf(triangles) => leaf(triangles),
-                TreeNode::Inner([first, second]) => {
-                    (stack[height], stack[height + 1]) = (second, first);
-                    height += 2;
-                }
-            }
-        }
     }
 
     /// Calls `visit` with every triangle whose leaf overlaps the box, in the order of the tree.
