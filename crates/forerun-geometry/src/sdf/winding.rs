@@ -20,7 +20,8 @@ pub(crate) fn winding(mesh: &Mesh, point: DVec3) -> i32 {
     let from = leant(point);
     let mut count = 0;
     let visit = |triangle: u32| {
-        count += passes(corners(mesh, triangle as usize).map(|corner| leant(corner) - from));
+        let [a, b, c] = corners(mesh, triangle as usize);
+        count += passes([leant(a) - from, leant(b) - from, leant(c) - from]);
         f64::INFINITY
     };
     mesh.tree().walk(|bounds| is_on_line(bounds, from).then_some(0.0), visit, f64::INFINITY);

@@ -102,15 +102,22 @@ impl TriangleTree {
                 }
                 continue;
             }
-            let children = [index + 1, node.link];
-            let [first, second] = children.map(|c| distance(&self.nodes[c as usize].bounds).map(|d| (c, d)));
-            let pushed = match (first, second) {
-                (Some(a), Some(b)) if a.1 <= b.1 => [Some(b), Some(a)],
-                (a, b) => [a, b],
+            let (first, second) = (index + 1, node.link);
+            let to_first = distance(&self.nodes[first as usize].bounds);
+            let to_second = distance(&self.nodes[second as usize].bounds);
+            let mut push = |child: u32, distance: Option<f64>| {
+                if let Some(d) = distance {
+                    stack[height] = (child, d);
+                    height += 1;
+                }
             };
-            for child in pushed.into_iter().flatten() {
-                stack[height] = child;
-                height += 1;
+            // The nearer one last, to be taken up first.
+            if matches!((to_first, to_second), (Some(a), Some(b)) if a <= b) {
+                push(second, to_second);
+                push(first, to_first);
+            } else {
+                push(first, to_first);
+                push(second, to_second);
             }
         }
     }
