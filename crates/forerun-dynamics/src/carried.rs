@@ -9,7 +9,7 @@ use crate::bounds::Prospect;
 use crate::narrow_phase::{Contact, NarrowPhase, Outlook};
 use crate::{BodyState, Environment, Member};
 
-/// Contacts hold while the pair moves by no more than this part of the contact margin, or than was expected when they were looked for, ...
+/// Contacts hold while the pair moves by no more than this part of the contact margin, ...
 const MARGIN_PART: f32 = 0.5;
 /// ... but never while it moves by more than this part of the thinner body's half thickness.
 const THICKNESS_PART: f32 = 0.25;
@@ -34,7 +34,7 @@ impl Carried {
         environment: &Environment,
     ) -> Carried {
         let prospects = Prospects::new(members, environment);
-        let rooms = pairs.iter().map(|pair| prospects.room(*pair, prospects.way(*pair))).collect();
+        let rooms = pairs.iter().map(|pair| prospects.room(*pair)).collect();
         Carried { pairs, rooms, contacts }
     }
 
@@ -46,7 +46,7 @@ impl Carried {
             let way = prospects.way(pair);
             // Not "above": what is not a number is looked at again.
             if !(way <= *room) {
-                *room = prospects.room(pair, way);
+                *room = prospects.room(pair);
                 stale.push(pair);
             }
         }
@@ -92,8 +92,9 @@ impl Move {
         let shift = next.position - member.state.position;
         let turn = next.rotation * member.state.rotation.conjugate();
         let sine = Vec3::new(turn.x, turn.y, turn.z).length();
-        // A body without bounds does not turn.
-        let sway = if sine > 0.0 { 2.0 * sine * member.body.radius } else { 0.0 };
+        // What has not turned has not by rounding either: a body without bounds would sway without end.
+        let turned = next.rotation != member.state.rotation;
+        let sway = if turned && sine > 0.0 { 2.0 * sine * member.body.radius } else { 0.0 };
         Move { shift, sway }
     }
 }
@@ -123,11 +124,11 @@ impl<'a> Prospects<'a> {
         (a.motion.linear - b.motion.linear).length() + a.sway_m + b.sway_m
     }
 
-    /// How far they may move if contacts were looked for with this way ahead. Metres.
-    fn room(&self, (i, j): (u32, u32), way: f32) -> f32 {
+    /// How far they may move, in whatever direction, while contacts hold. Metres.
+    fn room(&self, (i, j): (u32, u32)) -> f32 {
         let half_thickness = |i: u32| self.members[i as usize].body.half_thickness;
         let thickness = half_thickness(i).min(half_thickness(j));
-        (MARGIN_PART * self.contact_margin_m).max(way).min(THICKNESS_PART * thickness)
+        (MARGIN_PART * self.contact_margin_m).min(THICKNESS_PART * thickness)
     }
 }
 

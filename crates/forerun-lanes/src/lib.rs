@@ -103,7 +103,7 @@ pub unsafe trait Lanes:
     /// As [`Lanes::gather_raw`], of rows to which only this thread writes, or others at other places.
     #[inline(always)]
     fn gather_cells(rows: &[Cell<Row>], index: &[u32; LANES]) -> [Self; LANES] {
-        // SAFETY: a cell is laid out as what is in it, and is not shared between threads but by `Shared::cells`, whose callers keep out of each other's way.
+        // SAFETY: a cell is laid out as what is in it, and cannot be shared between threads; whoever makes cells of shared memory keeps others from writing what is read.
         #[allow(unsafe_code, reason = "see above")]
         unsafe {
             Self::gather_raw(rows.as_ptr().cast(), rows.len(), index)

@@ -462,8 +462,8 @@ fn what_is_no_recording_is_told_by_name() {
     assert!(told(b"name = 'dominoes'\n").starts_with("is no recording"));
     let good = &small_files()[0];
     let mut newer = good.clone();
-    newer[8] = 2;
-    let expected = "byte 8: is a recording of version 2, and this program reads version 1; use the program that wrote it";
+    newer[8] = 3;
+    let expected = "byte 8: is a recording of version 3, and this program reads version 2; use the program that wrote it";
     assert_eq!(told(&newer), expected);
     let missing = load_timeline(temporary.0.join("none")).expect_err("there is no such file");
     assert!(missing.to_string().contains("No such file"), "{missing}");

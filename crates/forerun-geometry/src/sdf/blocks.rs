@@ -54,7 +54,11 @@ impl Blocks {
     pub(super) fn fine(&self) -> Option<usize> {
         let mut numbers: Vec<u16> = self.numbers.iter().copied().filter(|n| *n > 0).collect();
         numbers.sort_unstable();
-        numbers.iter().zip(1..).all(|(number, wanted)| *number == wanted).then_some(numbers.len())
+        numbers
+            .iter()
+            .zip(1_u32..)
+            .all(|(number, wanted)| u32::from(*number) == wanted)
+            .then_some(numbers.len())
     }
 
     /// Nodes of the coarse grid, which come first in the list.

@@ -55,11 +55,6 @@ impl Blur {
         }
     }
 
-    /// Whether there is any sharp edge.
-    pub(crate) fn is_any(&self) -> bool {
-        !self.cells.is_empty()
-    }
-
     /// Whether the field is blurred at a point of its frame.
     pub(crate) fn is_at(&self, field: &Field, point: Vec3) -> bool {
         if !field.contains(point) {

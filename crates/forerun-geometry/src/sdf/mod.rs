@@ -123,8 +123,11 @@ fn touchable_edges(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Ridge> {
 fn long_ridges(mesh: &Mesh, edges: &[Ridge]) -> Ridges {
     let half_thickness = mesh.half_thickness();
     let mut ridges = Vec::new();
-    for edge in edges.iter().filter(|e| e.ends[0].distance(e.ends[1]) > half_thickness) {
-        edge.cut(2.0 * half_thickness, &mut ridges);
+    let long: Vec<&Ridge> = edges.iter().filter(|e| e.length() > half_thickness).collect();
+    let total = long.iter().map(|e| e.length()).sum::<f32>();
+    let spacing = (2.0 * half_thickness).max(total / EDGE_SAMPLES_MAX);
+    for edge in long {
+        edge.cut(spacing, &mut ridges);
     }
     Ridges::new(ridges)
 }
@@ -137,7 +140,7 @@ fn sample_points(mesh: &Mesh, normals: &PseudoNormals, edges: &[Ridge]) -> Vec<S
     let mut samples: Vec<Sample> = vertices
         .map(|((point, normal), facing_max)| Sample { point: *point, normal: *normal, facing_max })
         .collect();
-    let total = edges.iter().map(|e| e.ends[0].distance(e.ends[1])).sum::<f32>();
+    let total = edges.iter().map(Ridge::length).sum::<f32>();
     let wished = if mesh.has_inside() {
         2.0 * mesh.half_thickness()
     } else {

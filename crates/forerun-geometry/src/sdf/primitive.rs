@@ -12,7 +12,7 @@ use crate::Vec3;
 use crate::shape::{Capsule, Cuboid, Cylinder, Hull};
 
 /// Something that points can be looked up in: signed distance and gradient, in a frame of its own.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Surface<'a> {
     HalfSpace,
     /// By radius.

@@ -38,6 +38,11 @@ pub(crate) struct Ridges {
 }
 
 impl Ridge {
+    /// Metres.
+    pub(crate) fn length(&self) -> f32 {
+        self.ends[0].distance(self.ends[1])
+    }
+
     /// Cuts an edge into stretches no longer than `spacing`.
     pub(crate) fn cut(self, spacing: f32, into: &mut Vec<Ridge>) {
         let [a, b] = self.ends;

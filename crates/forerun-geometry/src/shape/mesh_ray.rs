@@ -10,6 +10,8 @@ use crate::Aabb;
 const PROBES: usize = 1024;
 /// The part of the surface where it is thinnest, or nearest to another part, that does not count: sharp edges are thin without end.
 const NARROW_PARTS: f64 = 0.05;
+/// Half a thickness below this part of half the longest side of the mesh is not told from none.
+const THINNEST: f32 = 1e-3;
 
 /// The nearest triangle met on one of its sides.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +78,10 @@ impl Mesh {
     pub(super) fn measure_half_thickness(&self) -> f32 {
         let thickness =
             self.narrow(|middle, outward| self.first_hits(middle, -outward, |first| first.back.t).back.t);
-        ((0.5 * thickness) as f32).min(self.bounds().half_extents().min_element())
+        let half_extents = self.bounds().half_extents();
+        let half_thickness = ((0.5 * thickness) as f32).min(half_extents.min_element());
+        // Walls that touch each other are not a part of the solid without thickness.
+        half_thickness.max(THINNEST * half_extents.max_element())
     }
 
     /// Half the width of the narrowest gaps between parts of the surface that face each other: grooves of a thread, slits, holes. Measured from
@@ -197,7 +202,7 @@ mod tests {
         let about =
             |found: f32, wanted: f32| assert!((found / wanted - 1.0).abs() < 0.03, "{found}, not {wanted}");
         // Across the hole; a round one is wider where it is measured from the middle of a facet.
-        about(mesh_make::frame(Vec3::new(0.5, 0.06, 0.5), 0.4).unwrap().measure_half_gap(), 0.1);
+        about(mesh_make::frame(Vec3::new(0.5, 0.3, 0.5), 0.4).unwrap().measure_half_gap(), 0.1);
         about(mesh_make::ring(1.0, 0.2, 0.5, 128).unwrap().measure_half_gap(), 0.2);
         assert_eq!(mesh_make::cuboid(Vec3::ONE).unwrap().measure_half_gap(), f32::INFINITY);
         // The groove of a thread: at most the pitch less its crest, at least the root.

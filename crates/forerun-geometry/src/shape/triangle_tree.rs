@@ -144,9 +144,10 @@ mod tests {
                 let overlaps = Aabb::around(mesh.corners(t).into_iter()).overlaps(&query);
                 assert!(!overlaps || found.contains(&(t as u32)));
             }
+            let visited = found.len();
             found.sort_unstable();
             found.dedup();
-            assert_eq!(found.len(), found.len());
+            assert_eq!(found.len(), visited);
         }
         assert!(
             visited_in_all < 200 * mesh.triangles.len() / 20,

@@ -19,6 +19,10 @@ use super::points::{PointList, Region, RoundPoint};
 /// See [`Direction::inset`]; as part of half the thickness of the thinner shape.
 const INSET_PART: f32 = 0.25;
 
+/// Edges that a field takes to be farther away than they are by up to this part of what counts as near are left to it: they touch all the same, and its triangles
+/// take ten times as long to ask.
+const BLUR_PART: f32 = 0.25;
+
 /// Which of the two directions of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
@@ -37,6 +41,7 @@ pub(super) struct Primitives {
 }
 
 /// Points of one shape to be looked up in the field of another.
+#[derive(Clone, Copy)]
 pub(super) struct Direction<'a> {
     pub(super) way: Way,
     /// The points, in their own frame.
@@ -74,6 +79,12 @@ pub(super) struct Direction<'a> {
 }
 
 impl Direction<'_> {
+    /// The same for what is nearer than half the thickness of the thinner shape, whatever the motion.
+    pub(super) fn close(&self) -> Self {
+        let half_thickness = self.inset / INSET_PART;
+        Direction { margin: self.margin.min(self.near + half_thickness), ..*self }
+    }
+
     /// What turns the field's gradient into the normal from the first shape to the second: it leads away from the shape whose field it is.
     #[inline(always)]
     pub(super) fn sign(&self) -> f32 {
@@ -99,7 +110,8 @@ impl Going {
     /// `at`: the origin of the field's frame. Metres.
     fn new(motion: &Motion, at: Vec3, into_field: &Mat3) -> Going {
         let drift = motion.linear + motion.angular.cross(at - motion.about);
-        let spin = *into_field * motion.angular * MOTION_AHEAD;
+        // No point goes farther than across its circle, whatever the spin: so far the bounds of bodies reach, too.
+        let spin = (*into_field * motion.angular * MOTION_AHEAD).clamp_length_max(2.0);
         Going { drift: *into_field * drift * MOTION_AHEAD, spin, turn: spin.length() }
     }
 
@@ -186,10 +198,11 @@ fn direction<'a>(
         Shape::Mesh(mesh) => mesh_surface(mesh, 2.0 * sampled.shape.half_thickness()),
         shape => primitive_surface(shape, &memory.planes)?,
     };
+    let near = near(sampled.shape, field.shape, margin);
     // The triangles of a mended mesh do not tell its sides.
     let (skin, blur) = match field.shape {
         Shape::Mesh(mesh) if mesh.enclosure != Enclosure::Mended => {
-            (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.is_any()))
+            (Some(Skin::of(mesh)), Some(&mesh.collider().blur).filter(|b| b.depth > BLUR_PART * near))
         }
         _ => (None, None),
     };
@@ -211,7 +224,7 @@ fn direction<'a>(
         comes: Going::new(&field.motion, at, &into_field),
         bend: bend(sampled.shape, field.shape),
         inset: INSET_PART * sampled.shape.half_thickness().min(field.shape.half_thickness()),
-        near: near(sampled.shape, field.shape, margin),
+        near,
         margin,
     })
 }

@@ -241,7 +241,10 @@ impl Direction<'_> {
         let (goes, comes) = (self.goes.at(points), self.comes.at(points));
         let relative = goes - comes;
         let (away, along) = (-normals.dot(comes), normals.dot(goes));
-        along.min(F::zero()) + away.min(F::zero()) - relative.dot(relative) * F::splat(self.bend)
+        let closing =
+            along.min(F::zero()) + away.min(F::zero()) - relative.dot(relative) * F::splat(self.bend);
+        // No nearer than both together go: what is culled by that counts for nobody.
+        closing.max(-(goes.length() + comes.length()))
     }
 
     /// The normal in the world of a point with the given gradient, and the point half of `way` (metres) against the gradient from it.

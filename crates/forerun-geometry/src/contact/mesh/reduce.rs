@@ -69,7 +69,12 @@ pub(super) fn reduce(
     memory.starts.clear();
     let Some(direction) = directions.iter().flatten().next() else { return };
     let spread = Spread {
-        far_penalty: DEPTH_PENALTY * direction.near / direction.margin,
+        // Where nothing may be farther than the rest, nothing is.
+        far_penalty: if direction.margin > 0.0 {
+            DEPTH_PENALTY * direction.near / direction.margin
+        } else {
+            DEPTH_PENALTY
+        },
         apart: TOUCH_PART * direction.near,
     };
     choose_points(candidates, &spread, memory);

@@ -37,12 +37,16 @@ const INSIDE: f32 = 1e-3;
 /// How much farther, for each metre that they are deep or high, so that the side is nearer to them than the one next to it.
 const INSIDE_PER_DEPTH: f32 = 1.5;
 
+/// Whether there are edges to follow. Half-spaces meet edges at their ends, and spheres see them from their middle.
+pub(super) fn has_any(direction: &Direction) -> bool {
+    !direction.ridges.blocks.is_empty()
+        && !matches!(direction.surface, Surface::HalfSpace | Surface::Sphere(_))
+}
+
 /// Appends the points of long edges that are near the surface, or will be at the end of the step.
 pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
-    // These meet edges at their ends, or see them from their middle.
-    if matches!(direction.surface, Surface::HalfSpace | Surface::Sphere(_)) {
-        return;
-    }
+    // What is farther and fast is seen by the points, which are no farther apart than the shape is thick, and is then cut into slices.
+    let direction = &direction.close();
     for (eight, spheres) in direction.ridges.spheres.iter().enumerate() {
         let mut bits = 0;
         near(direction, spheres, &mut bits);
@@ -61,6 +65,16 @@ dispatched! {
 #[inline(always)]
 fn near_lanes<F: Lanes>(direction: &Direction, spheres: &Spheres, bits: &mut u32) {
     *bits = direction.near::<F, _>(&direction.surface, spheres);
+}
+
+dispatched! {
+    /// No point of the surface, but for its blur, is nearer than this to points of the field's frame. Metres.
+    fn bound(direction: &Direction, points: &V8<Portable>, out: &mut [f32; LANES]) => bound_lanes
+}
+
+#[inline(always)]
+fn bound_lanes<F: Lanes>(direction: &Direction, points: &V8<Portable>, out: &mut [f32; LANES]) {
+    *out = direction.surface.lower_bound::<F>(points.form()).to_array();
 }
 
 dispatched! {
@@ -161,6 +175,8 @@ struct Stretch {
     ends: [Place; 2],
     /// Where it is lowest, as far as is known.
     lowest: Place,
+    /// Whether following slopes leads no further.
+    settled: bool,
 }
 
 impl Stretch {
@@ -168,7 +184,7 @@ impl Stretch {
         let length = from.distance(to);
         let end = Place { at: length, ..Place::default() };
         let ends = [Place::default(), end];
-        Stretch { from, along: (to - from) / length, length, ends, lowest: Place::default() }
+        Stretch { from, along: (to - from) / length, length, ends, ..Stretch::default() }
     }
 
     /// Whether it may touch between its ends, and nearer than `reach`, as far as its first end tells.
@@ -229,8 +245,12 @@ impl Direction<'_> {
         let radii = Portable::from_array(stretches.map(|s| 0.5 * s.length));
         let reach = self.reach((from + to) * Portable::splat(0.5), radii).to_array();
         let reach = reach.map(|r| r + self.blur_depth);
-        self.measure(&mut stretches, |s| s.ends[0].at, ridges.meant, |s, place| s.ends[0] = place);
-        let mut bits = keep(ridges.meant, |i| stretches[i].may_touch(reach[i]));
+        let (mut first, mut second) = ([0.0; LANES], [0.0; LANES]);
+        bound(self, &from, &mut first);
+        bound(self, &to, &mut second);
+        let mut bits = keep(ridges.meant, |i| 0.5 * (first[i] + second[i] - stretches[i].length) < reach[i]);
+        self.measure(&mut stretches, |s| s.ends[0].at, bits, |s, place| s.ends[0] = place);
+        bits = keep(bits, |i| stretches[i].may_touch(reach[i]));
         self.measure(&mut stretches, |s| s.ends[1].at, bits, |s, place| s.ends[1] = place);
         bits = keep(bits, |i| stretches[i].touches(reach[i]));
         if bits == 0 {
@@ -272,7 +292,8 @@ impl Direction<'_> {
         }
         for _ in 0..STEPS {
             let tangents = |s: &Stretch| s.ends[0].meets(&s.ends[1]);
-            self.measure(stretches, tangents, bits, |s, place| {
+            let unsettled = keep(bits, |i| !stretches[i].settled);
+            self.measure(stretches, tangents, unsettled, |s, place| {
                 // Not for nothing: a level stretch is to be seen from its far end.
                 let on_the_way = s.lowest.falls(1.0) || s.lowest.falls(-1.0);
                 if on_the_way || place.distance < s.lowest.distance - LOWER {
@@ -282,6 +303,8 @@ impl Direction<'_> {
                     s.ends[0] = place;
                 } else if place.falls(-1.0) {
                     s.ends[1] = place;
+                } else {
+                    s.settled = true;
                 }
             });
         }

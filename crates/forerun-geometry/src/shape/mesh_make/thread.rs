@@ -86,6 +86,11 @@ const PROFILE: [(f64, f64); 6] = [
 const CHAMFER: f64 = 0.1;
 
 impl Thread {
+    /// Shortest and greatest length that it is made in. Metres.
+    fn lengths(&self) -> (f32, f32) {
+        (self.pitch, PITCHES_MAX * self.pitch)
+    }
+
     /// From crest to root. Metres.
     #[must_use]
     pub fn depth(&self) -> f32 {
@@ -129,6 +134,9 @@ struct Point {
     at: DVec2,
 }
 
+/// Most pitches of a thread.
+const PITCHES_MAX: f32 = 1000.0;
+
 /// Numbers of the points that all columns have, before and behind those of the thread.
 const BEFORE: i64 = -1_000_000;
 const BEHIND: i64 = 1_000_000;
@@ -141,7 +149,7 @@ impl Bolt {
     pub fn check(&self) -> Result<(), ShapeError> {
         self.thread.check()?;
         columns(self.segments)?;
-        within("length", self.length, (self.thread.pitch, f32::MAX), "at least a pitch")?;
+        within("length", self.length, self.thread.lengths(), "from one to a thousand pitches")?;
         positive("head_height", self.head_height)?;
         let least = self.thread.radius;
         within("head_radius", self.head_radius, (least, f32::MAX), "above the radius of the thread")
@@ -180,7 +188,7 @@ impl Nut {
         self.thread.check()?;
         columns(self.segments)?;
         within("clearance", self.clearance, (0.0, f32::MAX), "0 or more")?;
-        within("height", self.height, (self.thread.pitch, f32::MAX), "at least a pitch")?;
+        within("height", self.height, self.thread.lengths(), "from one to a thousand pitches")?;
         let least = (self.mouth() * self.chord()) as f32;
         within("outer_radius", self.outer_radius, (least, f32::MAX), "outside of the thread and its chamfer")
     }
