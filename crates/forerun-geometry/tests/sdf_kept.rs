@@ -3,9 +3,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use forerun_geometry::Vec3;
 use forerun_geometry::sdf::KeptError;
-use forerun_geometry::shape::{Inside, Mesh, MeshDraft, MeshError, MeshOptions};
+use forerun_geometry::shape::{Enclosure, Inside, Mesh, MeshDraft, MeshError, MeshOptions};
+use forerun_geometry::{Quat, Vec3};
 
 #[path = "common/meshes.rs"]
 mod meshes;
@@ -57,13 +57,39 @@ fn bytes_that_are_damaged_or_of_another_mesh_are_refused() {
 
 #[test]
 fn the_number_of_threads_does_not_show() {
-    let draft = draft(meshes::torus(0.5, 0.2, 48, 16));
-    let on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| bake(&draft)).baked_bytes()
+    // Tilted, so that the box around it is mostly empty.
+    let mut ring = meshes::torus(1.0, 0.08, 64, 12);
+    let tilt = Quat::from_rotation_arc(Vec3::Y, Vec3::new(0.6, 0.64, 0.48));
+    ring.0.iter_mut().for_each(|v| *v = tilt * *v);
+    // With a hole, and crossed by a ball: mended.
+    let mended = |(mut vertices, mut triangles): Triangles, ball: f32, at: Vec3| {
+        triangles.remove(50);
+        let (count, ball) = (vertices.len() as u32, meshes::sphere(ball, 24, 12));
+        vertices.extend(ball.0.iter().map(|v| *v + at));
+        triangles.extend(ball.1.iter().map(|t| t.map(|i| i + count)));
+        (vertices, triangles)
     };
-    let one = on(1);
-    assert!(one == on(2) && one == on(4));
+    let dense_mended = mended(meshes::torus(0.5, 0.2, 48, 16), 0.25, Vec3::X * 0.6);
+    let blocks_mended = mended(ring.clone(), 0.12, tilt * Vec3::X * 1.05);
+    let cases = [
+        (meshes::torus(0.5, 0.2, 48, 16), Enclosure::Closed, false),
+        (ring, Enclosure::Closed, true),
+        (dense_mended, Enclosure::Mended, false),
+        (blocks_mended, Enclosure::Mended, true),
+    ];
+    for (case, (triangles, enclosure, in_blocks)) in cases.into_iter().enumerate() {
+        let draft = draft(triangles);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| bake(&draft))
+        };
+        let one = on(1);
+        let field = one.collider().field.as_ref().expect("an inside");
+        let dense = (field.bounds().half_extents() * 2.0 / field.cell()).to_array().iter().product::<f32>();
+        assert_eq!((one.enclosure, field.bytes() < dense as usize), (enclosure, in_blocks), "case {case}");
+        let one = one.baked_bytes();
+        assert!(one == on(2).baked_bytes() && one == on(4).baked_bytes(), "case {case}");
+    }
 }
 
 #[test]

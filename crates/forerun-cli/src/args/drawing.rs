@@ -32,7 +32,7 @@ pub(crate) struct MeshArgs {
     /// Axis of the file that points up
     #[arg(long, value_enum, default_value = "y")]
     pub(crate) up: UpArg,
-    /// Wished edge of the field's cells in metres [default: an eighth of the smallest thickness, larger where memory demands it]
+    /// Wished edge of the field's cells in metres [default: an eighth of the smallest thickness or narrowest gap, larger where memory demands it]
     #[arg(long, value_name = "METRES", value_parser = scale, allow_negative_numbers = true)]
     pub(crate) cell: Option<f32>,
     /// Density in kg/m³, for mass and inertia

@@ -12,7 +12,7 @@ use super::bake_blocks::bake_blocks;
 use super::blocks::{BLOCK, NODES};
 use super::mend::Mended;
 use super::nearest::{Nearest, Skin, nearest};
-use super::winding::Winding;
+use super::winding::winding;
 use crate::Vec3;
 use crate::shape::Mesh;
 
@@ -42,7 +42,7 @@ pub(crate) enum Bounding<'a> {
     /// Pieces of a surface, and the triangles that wind round what is inside.
     Mended {
         surface: &'a Mesh,
-        winding: Winding<'a>,
+        covered: &'a Mesh,
         /// No hole in the surface is wider. Metres.
         gap: f64,
     },
@@ -51,8 +51,7 @@ pub(crate) enum Bounding<'a> {
 impl<'a> Bounding<'a> {
     /// What bounds the inside of a mended mesh.
     pub(crate) fn mended(mended: &'a Mended) -> Bounding<'a> {
-        let winding = Winding::new(&mended.covered);
-        Bounding::Mended { surface: &mended.surface, winding, gap: mended.gap }
+        Bounding::Mended { surface: &mended.surface, covered: &mended.covered, gap: mended.gap }
     }
 
     /// The signed distance of a point. `last`, of a point close by, makes it quick and is replaced.
@@ -63,14 +62,14 @@ impl<'a> Bounding<'a> {
                 let nearest = skin.nearest(at, guess);
                 (skin.signed(at, &nearest).distance, nearest)
             }
-            Bounding::Mended { surface, winding, gap } => {
+            Bounding::Mended { surface, covered, gap } => {
                 let nearest = nearest(surface, at, guess);
                 let distance = nearest.distance();
                 // Between points that are farther from the surface than from each other it does not pass.
                 let same_side = |m: &&Measured| m.distance.abs() + distance > at.distance(m.at) + 3.0 * gap;
                 let inside = match last.as_ref().filter(same_side) {
                     Some(m) => m.distance < 0.0,
-                    None => winding.at(at) > 0.5,
+                    None => winding(covered, at) > 0,
                 };
                 (if inside { -distance } else { distance }, nearest)
             }

@@ -1,6 +1,6 @@
 //! Mending: the surface between inside and outside of triangles that do not quite bound a volume, or do so more than once.
 //!
-//! Holes are covered first, so that the triangles go round every point a whole number of times (see [`Winding`]); what they go round at
+//! Holes are covered first, so that the triangles go round every point a whole number of times (see [`winding`]); what they go round at
 //! least once is inside. Walls with the inside, or the outside, on both sides do not count.
 //!
 //! Needs: triangles of one part that face the same way. Promise: a surface made of pieces of the triangles and covers; where two shells
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::crossing::has_crossings;
 use super::kept::Found;
 use super::pseudo_normals::corners;
-use super::winding::Winding;
+use super::winding::winding;
 use crate::Vec3;
 use crate::shape::Mesh;
 
@@ -79,8 +79,7 @@ impl Areas {
 /// about. Metres.
 pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) -> Verdict {
     if covers.triangles.is_empty() && !has_crossings(mesh) {
-        let winding = Winding::new(mesh);
-        let walls = Walls { covered: mesh, winding: &winding, beside: BESIDE * cell };
+        let walls = Walls { covered: mesh, beside: BESIDE * cell };
         // Shells that do not cross are wholly inside of others or wholly outside.
         if shells.len() < 2 || shells.iter().all(|t| walls.sides(corners(mesh, *t)) == (false, true)) {
             return Verdict::Sound;
@@ -91,8 +90,7 @@ pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) 
     let mut triangles = mesh.triangles.clone();
     triangles.extend(&covers.triangles);
     let covered = Mesh::assemble(vertices, triangles);
-    let winding = Winding::new(&covered);
-    let walls = Walls { covered: &covered, winding: &winding, beside: BESIDE * cell };
+    let walls = Walls { covered: &covered, beside: BESIDE * cell };
     // Nothing that is as thick as the mesh passes between points that are half as far apart.
     let mut areas = walls.areas(f64::from(mesh.half_thickness()).max(2.0 * cell));
     if areas.iter().any(Areas::mixed) {
@@ -131,7 +129,6 @@ fn judge(areas: &[Areas], triangles: usize) -> Option<Found> {
 /// Triangles and what they wind round.
 struct Walls<'a> {
     covered: &'a Mesh,
-    winding: &'a Winding<'a>,
     /// How far beside a wall one looks. Metres.
     beside: f64,
 }
@@ -192,7 +189,7 @@ impl Walls<'_> {
         // The radius of the circle inside is twice the area over the length around.
         let beside = self.beside.min(BESIDE_PIECE * vector.length() / around);
         let middle = (a + b + c) / 3.0;
-        let holds = |p: DVec3| self.winding.at(p) > 0.5;
+        let holds = |p: DVec3| winding(self.covered, p) > 0;
         (holds(middle + normal * beside), holds(middle - normal * beside))
     }
 }

@@ -77,7 +77,12 @@ impl PseudoNormals {
 
 /// The corners of a triangle of a mesh, in double precision.
 pub(crate) fn corners(mesh: &Mesh, triangle: usize) -> [DVec3; 3] {
-    mesh.triangles[triangle].map(|i| mesh.vertices[i as usize].as_dvec3())
+    let [a, b, c] = mesh.triangles[triangle];
+    [
+        mesh.vertices[a as usize].as_dvec3(),
+        mesh.vertices[b as usize].as_dvec3(),
+        mesh.vertices[c as usize].as_dvec3(),
+    ]
 }
 
 /// Unit normal of a triangle of a mesh.

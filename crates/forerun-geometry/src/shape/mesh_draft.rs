@@ -23,7 +23,7 @@ pub struct MeshOptions {
     /// Whether it must have an inside.
     pub inside: Inside,
     /// Wished distance between nodes of the field. Metres, above 0. Larger cells are used where the field would take
-    /// more than 2 MiB. None: an eighth of the smallest thickness, or gap, of the mesh.
+    /// more than 2 MiB. None: an eighth of the smallest thickness or narrowest gap of the mesh.
     pub cell: Option<f32>,
 }
 

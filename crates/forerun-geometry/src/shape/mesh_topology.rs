@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{Mesh, MeshError};
 use crate::Vec3;
 use crate::sdf::mend::Covers;
-use crate::sdf::winding::Winding;
+use crate::sdf::winding::winding;
 
 /// How often slivers beside slivers are taken up again.
 const SLIVER_ROUNDS: usize = 16;
@@ -270,8 +270,10 @@ pub(super) fn turn_shells(vertices: &[Vec3], triangles: &mut [[u32; 3]], parts: 
     // All parts faced outwards: then they go round a point as often as it is inside of parts.
     let outward = (triangles.iter().zip(parts))
         .map(|(&[a, b, c], part)| if volumes[*part as usize] < 0.0 { [a, c, b] } else { [a, b, c] });
-    let outward = Mesh::assemble(vertices.to_vec(), outward.collect());
-    let winding = Winding::new(&outward);
+    let mut outward: Vec<[u32; 3]> = outward.collect();
+    let covers = covers(vertices, &outward);
+    outward.extend(covers.triangles);
+    let outward = Mesh::assemble(vertices.iter().chain(&covers.apexes).copied().collect(), outward);
     let mut turn: Vec<Option<bool>> = volumes.iter().map(|v| (*v >= 0.0).then_some(false)).collect();
     let mut turned = 0;
     for (t, part) in parts.iter().enumerate() {
@@ -279,8 +281,7 @@ pub(super) fn turn_shells(vertices: &[Vec3], triangles: &mut [[u32; 3]], parts: 
             let [a, b, c] = outward.corners(t).map(|v| v.as_dvec3());
             let vector = (b - a).cross(c - a);
             let beside = vector.normalize_or_zero() * (1e-3 * vector.length().sqrt());
-            let around = winding.at((a + b + c) / 3.0 + beside).round();
-            around.rem_euclid(2.0) < 0.5
+            winding(&outward, (a + b + c) / 3.0 + beside).rem_euclid(2) == 0
         });
         if *turn {
             triangles[t].swap(1, 2);

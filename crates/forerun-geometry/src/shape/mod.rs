@@ -28,7 +28,6 @@ pub use mesh_draft::{Inside, MeshDraft, MeshOptions};
 pub(crate) use mesh_ray::FirstHits;
 pub use mesh_report::{Enclosure, MeshError, MeshRepairs};
 pub use triangle_list::TriangleList;
-pub(crate) use triangle_tree::TreeNode;
 
 /// A shape in a frame of its own. Cloning is cheap: large shapes are shared.
 ///

@@ -16,15 +16,6 @@ pub(crate) struct TriangleTree {
     order: Vec<u32>,
 }
 
-/// What a node of the tree is made of.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum TreeNode<'a> {
-    /// Triangles.
-    Leaf(&'a [u32]),
-    /// Two nodes.
-    Inner([usize; 2]),
-}
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
     bounds: Aabb,
@@ -72,46 +63,6 @@ impl TriangleTree {
         index as u32
     }
 
-    /// Number of nodes. Children come after their parents; node 0 is the root.
-    pub(crate) fn len(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// The box around all triangles of a node.
-    pub(crate) fn bounds(&self, node: usize) -> Aabb {
-        self.nodes[node].bounds
-    }
-
-    /// What a node is made of.
-    pub(crate) fn node(&self, index: usize) -> TreeNode<'_> {
-        let node = &self.nodes[index];
-        if node.count > 0 {
-            TreeNode::Leaf(&self.order[node.link as usize..][..node.count as usize])
-        } else {
-            TreeNode::Inner([index + 1, node.link as usize])
-        }
-    }
-
-    /// Calls `leaf` with the triangles of each leaf that `enter` lets one get to through all nodes above, in the order of the tree.
-    pub(crate) fn descend(&self, mut enter: impl FnMut(usize) -> bool, mut leaf: impl FnMut(&[u32])) {
-        let mut stack = [0; DEEPEST];
-        let mut height = 1;
-        while height > 0 {
-            height -= 1;
-            let index = stack[height];
-            if !enter(index) {
-                continue;
-            }
-            match self.node(index) {
-                TreeNode::Leaf(triangles) => leaf(triangles),
-                TreeNode::Inner([first, second]) => {
-                    (stack[height], stack[height + 1]) = (second, first);
-                    height += 2;
-                }
-            }
-        }
-    }
-
     /// Calls `visit` with every triangle whose leaf overlaps the box, in the order of the tree.
     pub(super) fn near(&self, aabb: &Aabb, mut visit: impl FnMut(u32)) {
         self.walk(
@@ -151,15 +102,22 @@ impl TriangleTree {
                 }
                 continue;
             }
-            let children = [index + 1, node.link];
-            let [first, second] = children.map(|c| distance(&self.nodes[c as usize].bounds).map(|d| (c, d)));
-            let pushed = match (first, second) {
-                (Some(a), Some(b)) if a.1 <= b.1 => [Some(b), Some(a)],
-                (a, b) => [a, b],
+            let (first, second) = (index + 1, node.link);
+            let to_first = distance(&self.nodes[first as usize].bounds);
+            let to_second = distance(&self.nodes[second as usize].bounds);
+            let mut push = |child: u32, distance: Option<f64>| {
+                if let Some(d) = distance {
+                    stack[height] = (child, d);
+                    height += 1;
+                }
             };
-            for child in pushed.into_iter().flatten() {
-                stack[height] = child;
-                height += 1;
+            // The nearer one last, to be taken up first.
+            if matches!((to_first, to_second), (Some(a), Some(b)) if a <= b) {
+                push(second, to_second);
+                push(first, to_first);
+            } else {
+                push(first, to_first);
+                push(second, to_second);
             }
         }
     }

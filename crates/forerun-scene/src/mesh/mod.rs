@@ -32,7 +32,7 @@ pub struct MeshEntry {
     pub scale: f32,
     /// Which axis of the file points up. Default y.
     pub up: UpEntry,
-    /// Wished distance between the nodes of its distance field, after scaling. Metres, above 0. Default an eighth of the smallest thickness.
+    /// Wished distance between the nodes of its distance field, after scaling. Metres, above 0. Default an eighth of the smallest thickness or narrowest gap.
     pub cell: Option<f32>,
     /// Whether it may have holes and edges: a terrain. Such a mesh has no inside and is for fixed and kinematic bodies only. Default false.
     pub open: bool,
