@@ -45,7 +45,8 @@ impl Carried {
         for (&pair, room) in self.pairs.iter().zip(&mut self.rooms) {
             let way = prospects.way(pair);
             // Not "above": what is not a number is looked at again.
-            if !(way <= *room) {
+            let covered = way <= *room;
+            if !covered {
                 *room = prospects.room(pair);
                 stale.push(pair);
             }

@@ -249,7 +249,7 @@ impl Direction<'_> {
 
     /// The normal in the world of a point with the given gradient, and the point half of `way` (metres) against the gradient from it.
     #[inline]
-    pub(super) fn to_world(&self, point: Vec3, gradient: Vec3, way: f32) -> (Vec3, Vec3) {
+    pub(super) fn placed_in_world(&self, point: Vec3, gradient: Vec3, way: f32) -> (Vec3, Vec3) {
         let midpoint = point - gradient * (0.5 * way);
         let position = self.field_axes * midpoint + self.field_position;
         (self.field_axes * gradient * self.sign(), position)
@@ -279,7 +279,7 @@ fn find_round(direction: &Direction, balls: &[RoundPoint], candidates: &mut Cand
         if meant && gradient.length_squared() > GRADIENT_SQUARED_MIN {
             let normal = gradient.normalize();
             points[i] = centre;
-            (normals[i], positions[i]) = direction.to_world(centre, normal, radii[i] + distance);
+            (normals[i], positions[i]) = direction.placed_in_world(centre, normal, radii[i] + distance);
             separations[i] = separation;
             found = true;
         }
