@@ -20,7 +20,7 @@ mod sharp;
 mod smooth;
 
 use candidates::Candidates;
-use directions::{Direction, Primitives};
+use directions::Primitives;
 use reduce::Reduction;
 
 /// Points this near to the other surface count however they move; points farther away only if they will be as near as
@@ -62,14 +62,10 @@ pub(super) fn mesh_manifolds(
     candidates.clear();
     for direction in directions.iter().flatten() {
         look_up::find(direction, candidates);
-    }
-    // Where edges cross is the same seen from both; triangles that must be asked cost most.
-    let edged = |blurred: bool| {
-        let follows = move |d: &&Direction| ridges::has_any(d) && d.blur.is_some() == blurred;
-        directions.iter().flatten().find(follows)
-    };
-    if let Some(direction) = edged(false).or_else(|| edged(true)) {
-        ridges::find(direction, candidates);
+        // Both ways: where edges cross only the sharper one sees both sides of the other.
+        if ridges::has_any(direction) {
+            ridges::find(direction, candidates);
+        }
     }
     reduce::reduce(candidates, &directions, reduction, out);
 }
