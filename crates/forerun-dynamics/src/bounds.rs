@@ -9,7 +9,7 @@ use crate::solver::{pull, times_inverse_inertia};
 use crate::{Body, BodyKind, BodyState, Environment};
 
 /// How much further than its velocity says a body is expected to move.
-pub(crate) const MOTION_FACTOR: f32 = 1.2;
+pub(crate) const MOTION_FACTOR: f32 = forerun_geometry::contact::MOTION_AHEAD;
 
 /// Nobody looks farther ahead than this along an axis (metres), or so many radii of the body: else a velocity beyond all measure, given to all bodies of a
 /// large scene, makes everybody a neighbour of everybody, and memory runs out. 20 m in a frame are 1200 m/s.

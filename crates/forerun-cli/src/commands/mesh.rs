@@ -41,8 +41,9 @@ struct MeshReport {
     repairs: String,
     min_m: [f32; 3],
     max_m: [f32; 3],
-    /// None without an inside, as all below.
+    /// None without an inside.
     solid: Option<Solid>,
+    /// None without an inside.
     field: Option<FieldReport>,
     samples: usize,
     /// Field, samples and what else contact needs.
@@ -68,25 +69,20 @@ struct Solid {
 struct FieldReport {
     cell_m: f32,
     bytes: usize,
-    /// How far from 0 the field is on the triangles: at corners, middles of edges and of faces.
+    /// How far from 0 the field is at points spread over the triangles, as it states itself.
     error_mean_m: f32,
     error_max_m: f32,
 }
 
 impl FieldReport {
-    fn of(field: &Field, mesh: &Mesh) -> FieldReport {
-        let (mut sum, mut error_max_m) = (0.0, 0.0_f32);
-        for t in 0..mesh.triangles.len() {
-            let [a, b, c] = mesh.corners(t);
-            let middles = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3.0];
-            for point in [a, b, c].into_iter().chain(middles) {
-                let error = field.distance_and_gradient(point).0.abs();
-                sum += f64::from(error);
-                error_max_m = error_max_m.max(error);
-            }
+    fn of(field: &Field) -> FieldReport {
+        let error = field.error().distance;
+        FieldReport {
+            cell_m: field.cell(),
+            bytes: field.bytes(),
+            error_mean_m: error.mean,
+            error_max_m: error.max,
         }
-        let error_mean_m = (sum / (7 * mesh.triangles.len()) as f64) as f32;
-        FieldReport { cell_m: field.cell(), bytes: field.bytes(), error_mean_m, error_max_m }
     }
 }
 
@@ -193,7 +189,7 @@ impl Made {
             min_m: min.to_array(),
             max_m: max.to_array(),
             solid,
-            field: field.map(|field| FieldReport::of(field, mesh)),
+            field: field.map(FieldReport::of),
             samples: collider.samples.count(),
             bytes: collider.bytes(),
             bake_ms: self.bake_ms,

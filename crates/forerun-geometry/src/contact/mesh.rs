@@ -36,7 +36,7 @@ const TOUCH_PART: f32 = 0.25;
 /// Points weigh in the mean normal by how far they are above this much more than the smallest separation. As part of [`near`].
 const WEIGHT_PART: f32 = 0.5;
 /// Motion ahead that contact is looked for in, as a multiple of the motion of the step: contacts push bodies too.
-const MOTION_AHEAD: f32 = 1.2;
+pub const MOTION_AHEAD: f32 = 1.2;
 
 /// The memory that contact with meshes is found in. What it holds between two searches means nothing.
 #[derive(Clone, Debug, Default)]

@@ -27,6 +27,7 @@ mod solid;
 mod sphere;
 
 pub use cuboid::cuboid_cuboid;
+pub use mesh::MOTION_AHEAD;
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! The bytes that a glTF file names: in the file itself, in its text, or in a file beside it.
 
 use super::document::Buffer;
-use crate::mesh_file::{ParseError, shortened};
+use crate::mesh_file::{LARGEST_FILE, ParseError, shortened};
 
 /// Reads a file beside the glTF file, by its relative name.
 pub type ReadBeside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
@@ -13,6 +13,7 @@ pub(super) fn read_buffers(
     beside: ReadBeside<'_>,
 ) -> Result<Vec<Vec<u8>>, ParseError> {
     let mut read = Vec::new();
+    let mut total = 0;
     for (i, buffer) in buffers.iter().enumerate() {
         let fail = |message: String| ParseError::new(format!("buffers[{i}]"), message);
         let bytes = match &buffer.uri {
@@ -29,6 +30,11 @@ pub(super) fn read_buffers(
                 buffer.byte_length
             );
             return Err(fail(message));
+        }
+        // Many names of one file are as many copies of it.
+        total += bytes.len() as u64;
+        if total > LARGEST_FILE {
+            return Err(fail("takes all buffers together above 1 GiB; simplify the mesh".to_owned()));
         }
         read.push(bytes);
     }
