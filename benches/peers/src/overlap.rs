@@ -3,7 +3,7 @@
 //! Points of one body's surface are looked up in the other, both ways. A thin part that is right within another counts with half of the thinner's
 //! thickness: from there on every way leads out.
 
-use std::sync::Arc;
+use std::rc::Rc;
 
 use forerun::{Aabb, Pose, Shape, Vec3};
 
@@ -18,7 +18,7 @@ pub(crate) struct TrueBodies {
 
 struct TrueBody {
     shape: Shape,
-    form: Arc<Form>,
+    form: Rc<Form>,
     is_fixed: bool,
 }
 
@@ -36,7 +36,7 @@ impl TrueBodies {
         for actor in &stage.actors {
             let shape = actor.def.shape.clone();
             let known = bodies.iter().find(|body| is_shared(&body.shape, &shape));
-            let form = known.map_or_else(|| Arc::new(Form::of(&shape)), |body| body.form.clone());
+            let form = known.map_or_else(|| Rc::new(Form::of(&shape)), |body| body.form.clone());
             bodies.push(TrueBody { shape, form, is_fixed: actor.is_fixed() });
         }
         TrueBodies { bodies }
