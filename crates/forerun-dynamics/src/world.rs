@@ -102,7 +102,7 @@ impl World {
         detection.find_contacts(&members, environment);
         observer.after(Stage::Collisions);
         let group = Group { members: &members, pairs: &detection.pairs, contacts: &detection.contacts };
-        let known = Known { still: &stillness.still, touches };
+        let known = Known { still: &stillness.still, touches, close_up: None };
         let report = advance_islands(&group, environment, observer, known, scratch);
         scratch.members = emptied(members);
         stillness.note((states, &scratch.next), &scratch.plan.resting, environment);
