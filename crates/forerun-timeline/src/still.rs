@@ -26,6 +26,40 @@ pub struct StillBody {
 }
 
 impl Snapshot {
+    /// The bodies as they are shown at a time (seconds), in the order of their ids: to go on from there without a timeline. None where the time is no
+    /// number.
+    #[must_use]
+    pub fn still_at(&self, seconds: f64) -> Vec<StillBody> {
+        if seconds.is_nan() {
+            return Vec::new();
+        }
+        let look = self.look_at(seconds);
+        let mut bodies = Vec::new();
+        self.for_each_shown(look.moment, |body| {
+            let shown = self.shown(body, &look).map(|(_, state, _)| state.canonical());
+            let made = self.definitions.body(body, look.moment.frame.min(self.known_to(body)));
+            bodies.extend(shown.zip(made).map(|(state, made)| StillBody {
+                body,
+                def: self.definitions.def(body).cloned(),
+                made: Arc::clone(made),
+                state,
+            }));
+        });
+        bodies
+    }
+
+    /// Gravity and settings as they are from this frame to the next.
+    #[must_use]
+    pub fn environment_at(&self, frame: Frame) -> Environment {
+        self.definitions.environment(frame)
+    }
+
+    /// How many names of bodies are in use; ids are below it.
+    #[must_use]
+    pub fn names(&self) -> usize {
+        self.definitions.names()
+    }
+
     /// A snapshot of some bodies (sorted by id) at one frame.
     #[must_use]
     pub fn still(frame: Frame, bodies: &[StillBody], environment: Environment) -> Snapshot {
