@@ -182,6 +182,9 @@ impl Shortcut {
             Key::ArrowUp => "↑".to_owned(),
             Key::ArrowDown => "↓".to_owned(),
             Key::Escape => "Esc".to_owned(),
+            Key::Equals => "=".to_owned(),
+            Key::Plus => "+".to_owned(),
+            Key::Minus => "-".to_owned(),
             key => format!("{key:?}"),
         };
         match self.with {
@@ -190,6 +193,14 @@ impl Shortcut {
             With::Shift => format!("Shift+{key}"),
             With::CtrlShift => format!("Ctrl+Shift+{key}"),
         }
+    }
+}
+
+impl Action {
+    /// The keys that ask for it, for tooltips and menus: the first there are.
+    #[must_use]
+    pub fn keys(self) -> Option<String> {
+        SHORTCUTS.iter().find(|shortcut| shortcut.action == self).map(Shortcut::keys)
     }
 }
 

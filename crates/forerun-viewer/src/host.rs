@@ -9,7 +9,10 @@ use forerun::{Decoupled, Scene};
 mod native;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{Host, Starting};
+pub use native::{
+    Choosing, FilmWriter, Host, Saving, Starting, Watch, choose_scene, let_go, load_settings, save_file,
+    save_picture, save_settings, watch,
+};
 
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq)]

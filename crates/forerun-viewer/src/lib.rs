@@ -8,13 +8,17 @@
 
 pub mod actions;
 pub mod camera;
+pub mod capture;
 pub mod draw;
 pub mod hands;
 pub mod host;
 pub mod input;
+pub mod keeper;
 pub mod panels;
 pub mod report;
+pub mod series;
 pub mod session;
+pub mod settings;
 pub mod tessellate;
 pub mod view;
 pub mod viewer;
@@ -22,4 +26,4 @@ pub mod window;
 
 pub use host::SceneSource;
 pub use viewer::Viewer;
-pub use window::{NoWindow, WindowOptions, open};
+pub use window::{NoWindow, Screenshot, WindowOptions, open};

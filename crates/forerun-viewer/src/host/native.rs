@@ -1,9 +1,15 @@
 //! The desktop: physics in a thread, scenes and settings in files.
 
+mod files;
+mod pictures;
+
+pub use files::{Choosing, Watch, choose_scene, load_settings, save_file, save_settings, watch};
+pub use pictures::{FilmWriter, Saving, save_picture};
+
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use forerun::scene::MeshBaking;
-use forerun::{Decoupled, DecoupledSettings, Scene, Threads, TimelineSettings, timeline_of};
+use forerun::{Clock, Decoupled, DecoupledSettings, Scene, Threads, TimelineSettings, timeline_of};
 
 use super::{SceneSource, Started};
 
@@ -48,6 +54,11 @@ impl Starting {
     }
 }
 
+/// Lets go of something whose end takes a while: a driver waits for the step that it is in.
+pub fn let_go<T: Send + 'static>(value: T) {
+    std::thread::spawn(move || drop(value));
+}
+
 fn start(source: &SceneSource, baking: MeshBaking) -> Result<Started, String> {
     let mut scene = match source {
         SceneSource::BuiltIn(name) => Scene::open(name),
@@ -60,7 +71,11 @@ fn start(source: &SceneSource, baking: MeshBaking) -> Result<Started, String> {
         TimelineSettings { past: PAST_FRAMES, record_contacts: true, ..TimelineSettings::default() };
     let timeline = timeline_of(&scene, settings).map_err(|error| error.to_string())?;
     let threads = Threads::all().map_err(|error| error.to_string())?;
-    let settings = DecoupledSettings { count_areas: true, ..DecoupledSettings::new(threads) };
+    let settings = DecoupledSettings {
+        count_areas: true,
+        stage_clock: Some(Clock::system()),
+        ..DecoupledSettings::new(threads)
+    };
     let driver = Decoupled::start(timeline, settings).map_err(|error| error.to_string())?;
     Ok(Started { scene, driver })
 }
