@@ -48,9 +48,9 @@ pub struct Sample {
 /// Making one costs a reference count per frame in which something moved; it never changes and has no locks.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    valid_to: Frame,
+    pub(crate) valid_to: Frame,
     pub(crate) tables: Tables,
-    definitions: Arc<Definitions>,
+    pub(crate) definitions: Arc<Definitions>,
     /// The bodies that wait to be recomputed. Sorted by body.
     pub(crate) doubtful: Vec<Doubt>,
     /// What the commands of each frame did.
