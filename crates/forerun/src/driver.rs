@@ -16,6 +16,7 @@ mod physics;
 mod picture;
 mod reach;
 mod refusal;
+mod remote;
 mod threads;
 
 pub use blend::{Blending, Offset};
@@ -29,4 +30,5 @@ pub use frame_notes::FrameNote;
 pub use physics::Hinder;
 pub use picture::Picture;
 pub use refusal::{AdoptError, Refusal};
+pub use remote::{Courier, RemoteError, RemotePhysics, RemoteSettings};
 pub use threads::{Threads, ThreadsError};

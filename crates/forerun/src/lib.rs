@@ -75,8 +75,9 @@ pub use forerun_scene as scene;
 pub use forerun_timeline as timeline;
 
 pub use driver::{
-    AdoptError, Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, Fork,
-    FrameNote, Hinder, Offset, Picture, Refusal, StepLimits, Threads, ThreadsError,
+    AdoptError, Blending, ChangeError, Clock, Coupled, Courier, Decoupled, DecoupledSettings, DriverError,
+    Fork, FrameNote, Hinder, Offset, Picture, Refusal, RemoteError, RemotePhysics, RemoteSettings,
+    StepLimits, Threads, ThreadsError,
 };
 pub use forerun_dynamics::{
     Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, Mass, Material,
