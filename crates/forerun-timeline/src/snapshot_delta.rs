@@ -8,6 +8,7 @@
 //! no part of it.
 
 mod histories;
+mod marks;
 mod runs;
 #[cfg(test)]
 mod tests;
@@ -19,9 +20,10 @@ use std::sync::Arc;
 use forerun_dynamics::{Body, BodyDef, BodyId, BodyKind, BodyState, Environment, Material, Spring};
 use forerun_geometry::Vec3;
 
+use crate::areas::Grid;
 use crate::commanding::{Effect, FrameEffects};
 use crate::snapshot::Doubt;
-use crate::{Change, Frame, Snapshot};
+use crate::{Change, CommandKey, Edit, Frame, Snapshot};
 
 /// What differs between two snapshots.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +46,14 @@ pub struct SnapshotDelta {
     pub names: u32,
     /// The bodies that are something else than before. Sorted by body.
     pub histories: Vec<HistoryDelta>,
+    /// The frames of which other commands are in force than before: all that are now. Sorted; none where there are no more.
+    pub commands: Vec<(Frame, Vec<(CommandKey, Arc<Change>)>)>,
+    /// What the last batches of commands cost, if that is not as before.
+    pub edits: Option<Vec<Edit>>,
+    /// Whether there is something to undo, and to do again.
+    pub undoable: (bool, bool),
+    /// Edge of an area. Metres.
+    pub area_m: f32,
     /// Gravity and settings from which frame on, if that is not as before. Sorted by frame.
     pub environments: Option<Vec<(Frame, Environment)>>,
 }
@@ -167,6 +177,13 @@ impl SnapshotDelta {
             effects: effects_delta(before.map(|before| &*before.effects), &after.effects),
             names,
             histories,
+            commands: marks::commands_delta(
+                before.map(|before| &*before.marks.commands),
+                &after.marks.commands,
+            ),
+            edits: marks::edits_delta(before.map(|before| &before.marks.edits), &after.marks.edits),
+            undoable: (after.marks.can_undo, after.marks.can_redo),
+            area_m: after.grid.edge_m(),
             environments: (definitions.map(|before| &before.environments) != Some(environments))
                 .then(|| environments.clone()),
         }
@@ -192,6 +209,8 @@ impl SnapshotDelta {
             definitions,
             doubtful: self.doubtful()?,
             effects: self.effects(before)?,
+            marks: marks::apply(before.map(|before| &before.marks), self)?,
+            grid: Grid::new(self.area_m).ok_or_else(|| wrong("area_m", "must be above 0"))?,
         }))
     }
 

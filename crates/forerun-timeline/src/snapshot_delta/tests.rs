@@ -21,6 +21,10 @@ fn assert_same(mirror: &Snapshot, original: &Snapshot) {
     assert_eq!((mirror.oldest(), mirror.horizon()), (original.oldest(), original.horizon()));
     assert_eq!(mirror.valid_to(), original.valid_to());
     assert_eq!(mirror.doubtful, original.doubtful);
+    assert!(mirror.commands().eq(original.commands()) && mirror.edits().eq(original.edits()));
+    assert_eq!(mirror.can_undo(), original.can_undo());
+    assert_eq!(mirror.can_redo(), original.can_redo());
+    assert_eq!(mirror.grid, original.grid);
     let frame_s = f64::from(original.frame_seconds());
     let mut frame = original.oldest();
     while frame <= original.horizon().next() {
@@ -151,6 +155,11 @@ fn deltas_that_do_not_fit_are_refused() {
     let mut bad = good.clone();
     bad.histories = vec![history];
     assert!(bad.apply(Some(&mirror)).is_err());
+    refused(|delta| delta.area_m = 0.0, "area_m");
+    let key = CommandKey { frame: Frame(3), source: 0, sequence: 0 };
+    let mut bad = good.clone();
+    bad.commands = vec![(Frame(4), vec![(key, Arc::new(Change::Release { body: BodyId(1) }))])];
+    assert_eq!(bad.apply(Some(&mirror)).map(drop).map_err(|error| error.place), Err("commands"));
     refused(|delta| delta.environments = Some(Vec::new()), "environments");
     let mut whole = whole;
     whole.histories[3].entries[0].1.as_mut().expect("a body").gravity_scale = f32::NAN;

@@ -24,6 +24,8 @@ pub enum DriverError {
     Elsewhere,
     /// The physics thread panicked: a bug. What was published before can still be shown.
     Panicked(String),
+    /// The thread that answers questions panicked: a bug. Physics and pictures go on.
+    AnswersPanicked(String),
 }
 
 impl fmt::Display for DriverError {
@@ -39,6 +41,9 @@ impl fmt::Display for DriverError {
                 f.write_str("the physics runs elsewhere, and forks stay there: ask it for a preview instead")
             }
             DriverError::Panicked(message) => write!(f, "the physics thread panicked: {message}"),
+            DriverError::AnswersPanicked(message) => {
+                write!(f, "the thread that answers questions panicked: {message}")
+            }
         }
     }
 }

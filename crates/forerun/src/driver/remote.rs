@@ -14,6 +14,7 @@
 //! an error, never a panic, and changes nothing. Reports that the display has not acknowledged are bounded ([`REPORTS_MAX`]); what happens
 //! meanwhile is in the next one.
 
+mod answer_value;
 mod courier;
 mod delta_value;
 mod refusal_value;
@@ -24,6 +25,8 @@ mod wire;
 
 use std::fmt;
 
+use crate::Clock;
+
 pub use courier::Courier;
 pub use remote_physics::RemotePhysics;
 
@@ -31,17 +34,19 @@ pub use remote_physics::RemotePhysics;
 const REPORTS_MAX: u64 = 4;
 
 /// How a physics works that is elsewhere than its display.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct RemoteSettings {
     /// Orders that may wait for the physics; more are refused. 1 to 65536, default 1024.
     pub command_capacity: usize,
     /// As [`DecoupledSettings::count_areas`](crate::DecoupledSettings::count_areas). Default false.
     pub count_areas: bool,
+    /// As [`DecoupledSettings::stage_clock`](crate::DecoupledSettings::stage_clock). Default none.
+    pub stage_clock: Option<Clock>,
 }
 
 impl Default for RemoteSettings {
     fn default() -> Self {
-        RemoteSettings { command_capacity: 1024, count_areas: false }
+        RemoteSettings { command_capacity: 1024, count_areas: false, stage_clock: None }
     }
 }
 

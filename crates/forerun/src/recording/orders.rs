@@ -54,7 +54,7 @@ pub(crate) type KeyValue = (u64, u32, u64);
 
 /// As [`Change`]; the first number is the body.
 #[derive(Debug, Serialize, Deserialize)]
-enum ChangeValue {
+pub(crate) enum ChangeValue {
     Add(u32, Box<DefValue>),
     Remove(u32),
     Move(u32, PoseValue),
@@ -110,7 +110,11 @@ impl ToFile<'_> {
     }
 
     pub(crate) fn command(&mut self, command: &Command) -> CommandValue {
-        CommandValue { key: key_value(&command.key), change: self.change(&command.change) }
+        self.command_of(&command.key, &command.change)
+    }
+
+    pub(crate) fn command_of(&mut self, key: &CommandKey, change: &Change) -> CommandValue {
+        CommandValue { key: key_value(key), change: self.change(change) }
     }
 
     pub(crate) fn order(&mut self, order: &Order) -> OrderValue {
@@ -123,7 +127,7 @@ impl ToFile<'_> {
         }
     }
 
-    fn change(&mut self, change: &Change) -> ChangeValue {
+    pub(crate) fn change(&mut self, change: &Change) -> ChangeValue {
         match change {
             Change::Add { body, def } => ChangeValue::Add(body.0, Box::new(self.def(def))),
             Change::Remove { body } => ChangeValue::Remove(body.0),
@@ -210,7 +214,7 @@ pub(crate) fn order_of(value: OrderValue, stored: &[Shape]) -> Result<Order, Str
     })
 }
 
-fn change_of(value: ChangeValue, stored: &[Shape]) -> Result<Change, String> {
+pub(crate) fn change_of(value: ChangeValue, stored: &[Shape]) -> Result<Change, String> {
     let three = Vec3::from_array;
     Ok(match value {
         ChangeValue::Add(body, def) => {

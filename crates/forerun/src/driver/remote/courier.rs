@@ -7,6 +7,7 @@ use forerun_timeline::parts::FRAME_MAX;
 use forerun_timeline::{Frame, TimelineSettings};
 
 use super::RemoteError;
+use super::answer_value::{answered_of, preview_value};
 use super::delta_value::{delta_of, stats_of};
 use super::refusal_value::refusal_of;
 use super::wire::{Letter, Reader, Report, Start, Writer};
@@ -14,8 +15,11 @@ use crate::driver::decoupled::{COMMANDS_MAX, Decoupled};
 use crate::driver::fork::Names;
 use crate::driver::frame_notes::FrameNote;
 use crate::driver::hearing::Message;
+use crate::driver::inquiry::Answered;
+use crate::driver::inquiry::desk::{Desk, Inquiry};
 use crate::driver::physics::{Published, Shared};
 use crate::driver::refusal::Refusal;
+use crate::driver::stage_times::StageTimes;
 use crate::recording::orders::ToFile;
 
 /// Carries what a [`Decoupled`] says to a [`RemotePhysics`](crate::RemotePhysics), and what that answers. When it is dropped, the driver's
@@ -26,6 +30,9 @@ pub struct Courier {
     names: Arc<Names>,
     messages: Receiver<Message>,
     refusals: SyncSender<Refusal>,
+    /// Where the display lays down questions, and where it finds answers.
+    desk: Arc<Desk>,
+    answers: SyncSender<Answered>,
     writer: Writer,
     reader: Reader,
     /// Letters written.
@@ -66,12 +73,22 @@ impl Decoupled {
         let names = Names::from(body, sequence);
         let (message_sender, messages) = sync_channel(capacity);
         let (refusals, refusal_receiver) = sync_channel(capacity);
-        let ends = (message_sender, refusal_receiver);
+        let (inquiry, desk, answers) = Inquiry::elsewhere();
+        let ends = (message_sender, refusal_receiver, inquiry);
         let driver = Decoupled::elsewhere(Arc::clone(&shared), Arc::clone(&names), lookahead, ends);
-        let writer = Writer::default();
-        let said = (0, 0);
-        let courier =
-            Courier { shared, names, messages, refusals, writer, reader, letters: 0, reports: 1, said };
+        let courier = Courier {
+            shared,
+            names,
+            messages,
+            refusals,
+            desk,
+            answers,
+            writer: Writer::default(),
+            reader,
+            letters: 0,
+            reports: 1,
+            said: (0, 0),
+        };
         Ok((driver, courier))
     }
 }
@@ -85,7 +102,10 @@ impl Courier {
         let (shown, pictures) = self.shared.shown();
         let (names, _) = self.names.next();
         let orders: Vec<Message> = self.messages.try_iter().collect();
-        if orders.is_empty() && self.said == (pictures, self.reports) {
+        let inspection = self.desk.take_inspection();
+        let preview = self.shared.take_preview();
+        let asks = inspection.is_some() || preview.is_some();
+        if orders.is_empty() && !asks && self.said == (pictures, self.reports) {
             return Vec::new();
         }
         self.said = (pictures, self.reports);
@@ -99,7 +119,9 @@ impl Courier {
                 Message::Fork | Message::Adopt(_) => None,
             });
             let orders = orders.collect();
-            Letter { number, acknowledged, shown: shown.0, pictures, names, orders }
+            let inspection = inspection.map(|asked| (asked.ticket.0, asked.frame.0));
+            let preview = preview.map(|asked| preview_value(asked.ticket, &asked.preview, &mut to));
+            Letter { number, acknowledged, shown: shown.0, pictures, names, orders, inspection, preview }
         });
         vec![letter]
     }
@@ -134,6 +156,15 @@ impl Courier {
         for refusal in report.refusals {
             // When it is full, nobody has asked for refusals for a whole queue's length, and nobody wants this one either.
             let _ = self.refusals.try_send(refusal_of(refusal));
+        }
+        for answered in report.answers {
+            // The same.
+            let _ = self.answers.try_send(answered_of(answered));
+        }
+        for (frame, extended, recomputed, affected, seconds, other_s) in report.stage_times {
+            let frame = Frame(frame);
+            let times = StageTimes { number: 0, frame, extended, recomputed, affected, seconds, other_s };
+            self.shared.stage_times.write(&times);
         }
         Ok(())
     }

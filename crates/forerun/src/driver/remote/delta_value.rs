@@ -5,13 +5,13 @@ use std::sync::Arc;
 use forerun_dynamics::BodyState;
 use forerun_geometry::{Shape, Vec3};
 use forerun_timeline::snapshot_delta::{BodyTraits, DeltaBase, HistoryDelta, RunDelta};
-use forerun_timeline::{Counters, Edit, Frame, SnapshotDelta, Stats};
+use forerun_timeline::{Change, Command, CommandKey, Counters, Edit, Frame, SnapshotDelta, Stats};
 use serde::{Deserialize, Serialize};
 
 use crate::recording::large_shapes::{LargeShape, StoredShapes, Three};
 use crate::recording::orders::{
-    DefValue, KindValue, SpringValue, ToFile, def_of, kind_of, kind_value, material_of, material_value,
-    spring_of, spring_value,
+    CommandValue, DefValue, KindValue, SpringValue, ToFile, command_of, def_of, kind_of, kind_value,
+    material_of, material_value, spring_of, spring_value,
 };
 use crate::recording::start::{StepValue, step_of, step_value};
 use crate::recording::states::{LastStates, Words, state_of};
@@ -29,6 +29,11 @@ pub(super) struct DeltaValue {
     names: u32,
     histories: Vec<HistoryValue>,
     environments: Option<Vec<(u64, Three, StepValue)>>,
+    /// Frames, each with all that is in force there.
+    commands: Vec<(u64, Vec<CommandValue>)>,
+    edits: Option<Vec<EditValue>>,
+    undoable: (bool, bool),
+    area_m: f32,
 }
 
 /// First and last frame, what the states are compared with, and the states as in a recording.
@@ -65,6 +70,12 @@ pub(super) fn delta_value(
         made: history.made.as_ref().map(|made| made.as_ref().map(|def| to.def(def))),
         entries: history.entries.iter().map(|(f, traits)| (f.0, traits.as_ref().map(traits_value))).collect(),
     };
+    let histories = delta.histories.iter().map(history).collect();
+    let commands = delta.commands.iter().map(|(frame, commands)| {
+        let command = |(key, change): &(CommandKey, Arc<Change>)| to.command_of(key, change);
+        (frame.0, commands.iter().map(command).collect())
+    });
+    let commands = commands.collect();
     let environment = |(from, environment): &(Frame, Environment)| {
         (from.0, environment.gravity.to_array(), step_value(&environment.settings))
     };
@@ -77,8 +88,12 @@ pub(super) fn delta_value(
         doubts: delta.doubts.iter().map(|(body, frame, arrives)| (body.0, frame.0, *arrives)).collect(),
         effects: delta.effects.iter().map(|(f, on)| (f.0, on.iter().map(bits).collect())).collect(),
         names: delta.names,
-        histories: delta.histories.iter().map(history).collect(),
+        histories,
         environments: delta.environments.as_ref().map(|all| all.iter().map(environment).collect()),
+        commands,
+        edits: delta.edits.as_ref().map(|edits| edits.iter().map(edit_value).collect()),
+        undoable: delta.undoable,
+        area_m: delta.area_m,
     }
 }
 
@@ -100,6 +115,14 @@ pub(super) fn delta_of(value: DeltaValue, shapes: &[Shape]) -> Result<SnapshotDe
         let entries = value.entries.into_iter().map(|(f, traits)| (Frame(f), traits.map(traits_of)));
         Ok(HistoryDelta { body: BodyId(value.body), made: made.transpose()?, entries: entries.collect() })
     };
+    let command = |value: CommandValue| {
+        let Command { key, change } = command_of(value, shapes)?;
+        Ok((key, Arc::new(change)))
+    };
+    let commands = |(frame, commands): (u64, Vec<CommandValue>)| {
+        let commands: Result<Vec<_>, String> = commands.into_iter().map(command).collect();
+        Ok((Frame(frame), commands?))
+    };
     let environment = |(from, gravity, step): (u64, Three, StepValue)| {
         let environment = Environment { gravity: Vec3::from_array(gravity), settings: step_of(&step) };
         (Frame(from), environment)
@@ -117,6 +140,10 @@ pub(super) fn delta_of(value: DeltaValue, shapes: &[Shape]) -> Result<SnapshotDe
         names: value.names,
         histories: value.histories.into_iter().map(history).collect::<Result<_, String>>()?,
         environments: value.environments.map(|all| all.into_iter().map(environment).collect()),
+        commands: value.commands.into_iter().map(commands).collect::<Result<_, String>>()?,
+        edits: value.edits.map(|edits| edits.into_iter().map(edit_of).collect()),
+        undoable: value.undoable,
+        area_m: value.area_m,
     })
 }
 
@@ -171,13 +198,21 @@ type CountersValue = (u64, u64, u64, u64);
 /// Frame, commands, affected, recomputed, full, frames.
 type EditValue = (u64, u32, u64, u64, u64, u64);
 
+fn edit_value(edit: &Edit) -> EditValue {
+    let Edit { frame, commands, affected, recomputed, full, frames } = *edit;
+    (frame.0, commands, affected, recomputed, full, frames)
+}
+
+fn edit_of((frame, commands, affected, recomputed, full, frames): EditValue) -> Edit {
+    Edit { frame: Frame(frame), commands, affected, recomputed, full, frames }
+}
+
 pub(super) fn stats_value(stats: &Stats) -> StatsValue {
     let counters = |c: &Counters| (c.affected, c.recomputed, c.frames, c.quarantined);
-    let Edit { frame, commands, affected, recomputed, full, frames } = stats.last_edit;
     StatsValue {
         ahead: counters(&stats.ahead),
         edits: counters(&stats.edits),
-        last_edit: (frame.0, commands, affected, recomputed, full, frames),
+        last_edit: edit_value(&stats.last_edit),
         ignored: stats.ignored,
         slices_max: stats.slices_max,
         past_frames: stats.past_frames,
@@ -194,11 +229,10 @@ pub(super) fn stats_of(value: &StatsValue) -> Stats {
         frames,
         quarantined,
     };
-    let (frame, commands, affected, recomputed, full, frames) = value.last_edit;
     Stats {
         ahead: counters(value.ahead),
         edits: counters(value.edits),
-        last_edit: Edit { frame: Frame(frame), commands, affected, recomputed, full, frames },
+        last_edit: edit_of(value.last_edit),
         ignored: value.ignored,
         slices_max: value.slices_max,
         past_frames: value.past_frames,

@@ -5,19 +5,22 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
 use forerun_timeline::parts::FRAME_MAX;
-use forerun_timeline::{Frame, Order, Progress, Snapshot, SnapshotDelta, Timeline};
+use forerun_timeline::{Frame, Order, Preview, Progress, Snapshot, SnapshotDelta, Timeline};
 
+use super::answer_value::{answered_value, preview_of};
 use super::delta_value::{delta_value, stats_value};
 use super::refusal_value::refusal_value;
-use super::wire::{Letter, Reader, Report, Start, Writer};
+use super::wire::{Letter, Reader, Report, StageTimesValue, Start, Writer};
 use super::{REPORTS_MAX, RemoteError, RemoteSettings};
 use crate::DriverError;
 use crate::driver::decoupled::COMMANDS_MAX;
 use crate::driver::fork::Names;
 use crate::driver::hearing::{Heard, Message};
+use crate::driver::inquiry::{Answered, Inquirer, Ticket};
 use crate::driver::physics::{Physics, Published, Shared};
 use crate::driver::reach::Reach;
 use crate::driver::refusal::Refusal;
+use crate::driver::stage_times::{StageTimes, StageWatch};
 use crate::recording::orders::order_of;
 
 /// So many names a letter may give without using them: who reads it is not to run out of memory for one number in it.
@@ -54,6 +57,11 @@ pub struct RemotePhysics {
     names: Arc<Names>,
     messages: SyncSender<Message>,
     refusals: Receiver<Refusal>,
+    inquirer: Inquirer,
+    /// A preview that waits until what was ordered before it is heard.
+    preview: Option<(Ticket, Preview)>,
+    /// Answers that the display does not have.
+    answers: Vec<Answered>,
     writer: Writer,
     reader: Reader,
     /// Letters taken.
@@ -66,6 +74,8 @@ pub struct RemotePhysics {
     sent: Option<Arc<Snapshot>>,
     /// Frames whose notes it does not have.
     noted: BTreeSet<Frame>,
+    /// The number of the first stage times that it does not have.
+    timed: u64,
     /// The picture for which it was told that all is done.
     told_done: Option<u64>,
 }
@@ -105,6 +115,7 @@ impl RemotePhysics {
             heard: Heard::new(Arc::clone(&names)),
             command_capacity: capacity,
             count_areas: settings.count_areas,
+            stage_watch: settings.stage_clock.map(StageWatch::new),
             reach,
             caught_up: true,
             pictures: 0,
@@ -116,6 +127,9 @@ impl RemotePhysics {
             names,
             messages,
             refusals,
+            inquirer: Inquirer::default(),
+            preview: None,
+            answers: Vec::new(),
             writer: Writer::default(),
             reader: Reader::default(),
             letters: 0,
@@ -123,6 +137,7 @@ impl RemotePhysics {
             acknowledged: 0,
             sent: None,
             noted: BTreeSet::new(),
+            timed: 0,
             told_done: None,
         })
     }
@@ -158,6 +173,8 @@ impl RemotePhysics {
         let orders: Result<Vec<Order>, String> =
             letter.orders.into_iter().map(|order| order_of(order, &opened.shapes)).collect();
         let orders = orders.map_err(RemoteError::Impossible)?;
+        let preview = letter.preview.map(|preview| preview_of(preview, &opened.shapes)).transpose();
+        let preview = preview.map_err(RemoteError::Impossible)?;
         self.reader.keep(opened.shapes);
         (self.letters, self.acknowledged) = (letter.number, letter.acknowledged);
         if let Some(last) = letter.names.checked_sub(1) {
@@ -168,6 +185,12 @@ impl RemotePhysics {
             self.order(order);
         }
         self.physics.shared.learn_shown(Frame(letter.shown), letter.pictures);
+        if let Some((ticket, frame)) = letter.inspection {
+            let snapshot = Arc::clone(&self.physics.shared.published.load().snapshot);
+            self.inquirer.ask_inspect(Ticket(ticket), snapshot, Frame(frame));
+        }
+        // Of each kind the newest question counts.
+        self.preview = preview.or(self.preview.take());
         Ok(())
     }
 
@@ -183,10 +206,22 @@ impl RemotePhysics {
     /// Obeys what was ordered, and computes at most one frame. [`Progress::Idle`] when nothing is to be done until a message comes.
     pub fn turn(&mut self) -> Progress {
         let progress = self.physics.turn();
+        // After that everything is heard that was ordered before the question.
+        if let Some((ticket, preview)) = self.preview.take() {
+            self.inquirer.ask_preview(ticket, self.physics.timeline.fork(), preview);
+        }
         if let Progress::Advanced(advance) = progress {
             self.noted.insert(advance.frame);
         }
         progress
+    }
+
+    /// Works at what the display asked, about a frame's worth; whether there is more to do. Between two calls of [`turn`](RemotePhysics::turn), so that
+    /// neither waits for the other. `now_s` is the caller's clock (seconds): a preview that takes long, while a newer one waits, is answered as far
+    /// as it is known.
+    pub fn answer(&mut self, now_s: f64) -> bool {
+        self.answers.extend(self.inquirer.work(now_s));
+        !self.inquirer.is_idle()
     }
 
     /// What is new since the last report, as a message for the display; `None` when nothing is, or when the display has not acknowledged
@@ -203,7 +238,8 @@ impl RemotePhysics {
         let refusals: Vec<Refusal> = self.refusals.try_iter().collect();
         let sent = self.sent.clone();
         let is_new = sent.as_ref().is_none_or(|sent| !Arc::ptr_eq(sent, &published.snapshot));
-        if !is_new && refusals.is_empty() && (!done || self.told_done == Some(pictures)) {
+        let told = refusals.is_empty() && self.answers.is_empty();
+        if !is_new && told && (!done || self.told_done == Some(pictures)) {
             return None;
         }
         self.told_done = done.then_some(pictures);
@@ -214,7 +250,10 @@ impl RemotePhysics {
             Some((frame.0, note.slices_max, note.areas_active))
         });
         let notes = notes.collect();
+        let mut times = Vec::new();
+        self.timed = shared.stage_times.read(self.timed, &mut times);
         let number = self.reports;
+        let answers = std::mem::take(&mut self.answers);
         let start = (number == 1).then(|| self.start());
         self.sent = Some(Arc::clone(&published.snapshot));
         Some(self.writer.write(|stored, new| Report {
@@ -226,6 +265,8 @@ impl RemotePhysics {
             dropped_to: shared.take_drop().map(|frame| frame.0),
             done,
             refusals: refusals.iter().filter_map(refusal_value).collect(),
+            answers: answers.iter().map(answered_value).collect(),
+            stage_times: times.iter().map(times_value).collect(),
         }))
     }
 
@@ -242,4 +283,9 @@ impl RemotePhysics {
             sequence,
         }
     }
+}
+
+fn times_value(times: &StageTimes) -> StageTimesValue {
+    let StageTimes { frame, extended, recomputed, affected, seconds, other_s, .. } = *times;
+    (frame.0, extended, recomputed, affected, seconds, other_s)
 }

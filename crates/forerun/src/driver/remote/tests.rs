@@ -1,10 +1,11 @@
 use forerun_timeline::check::Random;
-use forerun_timeline::{Change, CommandError, Progress};
+use forerun_timeline::{Change, CommandError, Preview, Progress};
 
 use super::*;
 use crate::driver::decoupled::Decoupled;
 use crate::driver::decoupled::tests::{LOOKAHEAD, timeline};
 use crate::driver::driver_error::DriverError;
+use crate::driver::inquiry::{Answer, InquiryError, Question, Ticket};
 use crate::driver::refusal::Refusal;
 use crate::{BodyDef, BodyId, Cuboid, Frame, Order, Pose, Sample, Shape, Sphere, Timeline, Vec3};
 
@@ -243,4 +244,53 @@ fn a_physics_that_ended_is_an_error_and_what_it_said_can_still_be_shown() {
     let Pair { display, courier, .. } = Pair::of(timeline());
     drop(courier);
     assert!(display.undo().is_err(), "nobody carries it");
+}
+
+#[test]
+fn questions_are_answered_from_afar() {
+    let mut pair = Pair::of(timeline());
+    pair.display.show(0.0).expect("physics lives");
+    pair.settle();
+    let inspection = pair.display.ask(Question::Inspect { frame: Frame(10) }).expect("physics lives");
+    let throw = Change::Push { body: BodyId(1), impulse: Vec3::X * 900.0, at_point: None };
+    let preview = Preview { frame: Frame(1), changes: vec![throw], frames: 15, bodies: Vec::new() };
+    let preview = pair.display.ask(Question::Preview(preview)).expect("physics lives");
+    let nowhere = pair.display.ask(Question::Inspect { frame: Frame(999) });
+    let nowhere = nowhere.expect("physics lives");
+    assert!(inspection < preview && preview < nowhere);
+    pair.exchange(1);
+    while pair.physics.answer(0.0) {}
+    pair.exchange(1);
+    let answers = pair.display.answers().expect("physics lives");
+    let of = |ticket: Ticket| answers.iter().find(|answered| answered.ticket == ticket);
+    assert_eq!(of(inspection), None, "a newer question of its kind came before it was carried");
+    let refused = of(nowhere).map(|answered| answered.answer.clone());
+    assert!(matches!(refused, Some(Err(InquiryError::NotStored { frame: Frame(999), .. }))), "{refused:?}");
+    let Some(Ok(Answer::Preview(previewed))) = of(preview).map(|answered| answered.answer.clone()) else {
+        panic!("{answers:?}")
+    };
+    assert_eq!((previewed.frame, previewed.to), (Frame(1), Frame(16)));
+    assert!(previewed.trails[0].body == BodyId(1) && previewed.trails[0].poses.len() == 17);
+    let asked = pair.display.ask(Question::Inspect { frame: Frame(10) }).expect("physics lives");
+    pair.exchange(1);
+    while pair.physics.answer(0.0) {}
+    pair.exchange(1);
+    let inspected = pair.display.answers().expect("physics lives").remove(0);
+    let own = pair.physics.timeline().snapshot().inspect(Frame(10)).expect("it is stored");
+    assert_eq!((inspected.ticket, inspected.answer), (asked, Ok(Answer::Inspect(own))));
+}
+
+#[test]
+fn stage_times_come_along() {
+    let settings = RemoteSettings { stage_clock: Some(Clock::by_hand()), ..RemoteSettings::default() };
+    let mut physics = RemotePhysics::new(timeline(), settings).expect("plain settings");
+    let first = physics.publish().expect("the first report");
+    let (display, mut courier) = Decoupled::remote(&first).expect("it was made for this");
+    while physics.turn() != Progress::Idle {}
+    courier.receive(&physics.publish().expect("frames are new")).expect("it was written here");
+    let mut times = Vec::new();
+    assert_eq!(display.stage_times(0, &mut times), u64::from(LOOKAHEAD));
+    let frames: Vec<u64> = times.iter().map(|times| times.frame.0).collect();
+    assert_eq!(frames, (1..=u64::from(LOOKAHEAD)).collect::<Vec<_>>());
+    assert!(times[0].extended && times[0].recomputed > 0);
 }

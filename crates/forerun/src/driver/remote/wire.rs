@@ -5,6 +5,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::RemoteError;
+use super::answer_value::{AnsweredValue, AskedInspectionValue, AskedPreviewValue};
 use super::delta_value::{DeltaValue, StatsValue};
 use super::refusal_value::RefusalValue;
 use crate::recording::large_shapes::{LargeShape, StoredShapes, large_shape_with};
@@ -28,6 +29,8 @@ pub(super) struct Letter {
     pub(super) names: u32,
     /// What was ordered before that picture, and possibly after it.
     pub(super) orders: Vec<OrderValue>,
+    pub(super) inspection: Option<AskedInspectionValue>,
+    pub(super) preview: Option<AskedPreviewValue>,
 }
 
 /// From the physics to the display.
@@ -47,7 +50,12 @@ pub(super) struct Report {
     /// Whether all is done that may be for what the display last told.
     pub(super) done: bool,
     pub(super) refusals: Vec<RefusalValue>,
+    pub(super) answers: Vec<AnsweredValue>,
+    pub(super) stage_times: Vec<StageTimesValue>,
 }
+
+/// Frame, whether it is a new one, bodies recomputed and affected, time of the stages and of the rest.
+pub(super) type StageTimesValue = (u64, bool, u32, u32, [f32; 6], f32);
 
 /// What a display has to know once.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
