@@ -10,7 +10,7 @@ const FLOORS: [(&str, u32); 10] = [
     ("forerun-timeline", 3),
     ("forerun-scene", 3),
     ("forerun", 4),
-    ("forerun-cli", 5),
+    ("forerun-cli", 6),
     ("forerun-viewer", 5),
     ("forerun-python", 5),
     ("forerun-wasm", 5),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 mod drawing;
 
-pub(crate) use drawing::{MeshArgs, RenderArgs, UpArg};
+pub(crate) use drawing::{MeshArgs, RenderArgs, UpArg, ViewArgs};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -20,7 +20,7 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Open the interactive viewer (not there yet)
+    /// Watch, throw, drag, scrub and look ahead: the interactive viewer
     View(ViewArgs),
     /// Play a scene against the clock; write queue.csv, report.json and charts
     Run(RunArgs),
@@ -48,12 +48,6 @@ pub(crate) enum Command {
 
 const SCENE_HELP: &str =
     "Built-in name, with sizes if wanted (dominoes, dominoes:1000), or a TOML or JSON file";
-
-#[derive(Debug, Args)]
-pub(crate) struct ViewArgs {
-    #[arg(help = SCENE_HELP)]
-    pub(crate) scene: Option<String>,
-}
 
 /// Who steps the physics, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

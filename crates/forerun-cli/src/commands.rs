@@ -10,3 +10,4 @@ pub(crate) mod run;
 pub(crate) mod scenes;
 pub(crate) mod soak;
 pub(crate) mod validate;
+pub(crate) mod view;

@@ -52,7 +52,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Soak(args)) => commands::soak::run(&args),
         Some(Command::Mesh(args)) => commands::mesh::run(&args),
         Some(Command::Render(args)) => commands::render::run(&args),
-        Some(Command::View(_)) => Err(Failure::not_there_yet("view")),
+        Some(Command::View(args)) => commands::view::run(&args),
         Some(Command::Bake(_)) => Err(Failure::not_there_yet("bake")),
     }
 }

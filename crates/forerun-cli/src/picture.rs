@@ -6,13 +6,12 @@ mod raster;
 mod shade;
 mod shadow;
 mod slice;
-mod tessellate;
 
 pub(crate) use camera::Camera;
 pub(crate) use canvas::Canvas;
+pub(crate) use forerun_viewer::tessellate::{Facet, facets};
 pub(crate) use shade::{Ground, Item, View, draw, square_for};
 pub(crate) use slice::draw_slices;
-pub(crate) use tessellate::{Facet, facets};
 
 use forerun::Vec3;
 

@@ -84,6 +84,19 @@ fn time(text: &str) -> Result<f64, String> {
     number_in(text, 0.0, 86_400.0)
 }
 
+/// `forerun view`.
+#[derive(Debug, Default, Args)]
+pub(crate) struct ViewArgs {
+    #[arg(help = SCENE_HELP)]
+    pub(crate) scene: Option<String>,
+    /// Width and height of the window; without it the window is as large as the screen
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Keep the state of the viewer in this file, as JSON, for scripts
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+}
+
 fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| {
         let side = |text: &str| text.parse().ok().filter(|side| (1..=SIDE_MAX).contains(side));

@@ -47,8 +47,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     if args.json { print_json(&playback.report) } else { print_result(&playback.report, &files) }
 }
 
-/// `forerun` alone: the dissertation's first experiment, decoupled.
+/// `forerun` alone: the dominoes in a window; where none can open, the dissertation's first experiment, decoupled.
 pub(crate) fn main_job() -> Result<(), Failure> {
+    let Err(no_window) = super::view::open_first() else { return Ok(()) };
+    print(&format!("{no_window}; running without one"))?;
     let mut scene = Scene::open("dominoes:255")?;
     scene.frame_seconds = DISSERTATION_FRAME_SECONDS;
     let settings = PlaybackSettings { seconds: DISSERTATION_SECONDS, ..PlaybackSettings::default() };

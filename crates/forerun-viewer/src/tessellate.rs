@@ -12,9 +12,11 @@ const FACES_MAX: usize = 48;
 
 /// A triangle with a normal at each corner, counter-clockwise seen from outside.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Facet {
-    pub(crate) corners: [Vec3; 3],
-    pub(crate) normals: [Vec3; 3],
+pub struct Facet {
+    /// In the frame of the shape. Metres.
+    pub corners: [Vec3; 3],
+    /// Unit vectors, one a corner.
+    pub normals: [Vec3; 3],
 }
 
 /// Triangles by the numbers of their corners.
@@ -25,7 +27,7 @@ struct Triangles {
 }
 
 /// The surface of a shape in its own frame. None for half-spaces, which have no end.
-pub(crate) fn facets(shape: &Shape) -> Vec<Facet> {
+pub fn facets(shape: &Shape) -> Vec<Facet> {
     let triangles = match shape {
         Shape::HalfSpace => Triangles::default(),
         Shape::Sphere(sphere) => turned(&half_circle(sphere.radius, 0.0)),

@@ -1,0 +1,60 @@
+//! Host: what the viewer asks of where it runs. A desktop has threads and files, a web page a worker and downloads; the rest of the viewer knows neither.
+
+use std::path::PathBuf;
+
+use forerun::scene::Format;
+use forerun::{Decoupled, Scene};
+
+#[cfg(not(target_arch = "wasm32"))]
+mod native;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use native::{Host, Starting};
+
+/// Where a scene comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneSource {
+    /// A built-in scene and its size, as on the command line: `dominoes:100`.
+    BuiltIn(String),
+    /// A file of this machine.
+    File(PathBuf),
+    /// A file that came as its content: dropped on a web page.
+    Text {
+        /// Its name, for messages.
+        name: String,
+        /// Its content.
+        text: String,
+        /// How it is written down.
+        format: Format,
+    },
+}
+
+impl SceneSource {
+    /// As on the command line: a file when it ends in `.toml` or `.json`, a built-in scene otherwise.
+    #[must_use]
+    pub fn of(name_or_path: &str) -> SceneSource {
+        let path = PathBuf::from(name_or_path);
+        match Format::of(&path) {
+            Some(_) => SceneSource::File(path),
+            None => SceneSource::BuiltIn(name_or_path.to_owned()),
+        }
+    }
+
+    /// As a title says it.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            SceneSource::BuiltIn(name) | SceneSource::Text { name, .. } => name.clone(),
+            SceneSource::File(path) => path.display().to_string(),
+        }
+    }
+}
+
+/// A scene whose physics runs.
+#[derive(Debug)]
+pub struct Started {
+    /// What there was at frame 0.
+    pub scene: Scene,
+    /// The display's handle on the physics.
+    pub driver: Decoupled,
+}
