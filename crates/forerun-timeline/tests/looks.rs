@@ -16,7 +16,8 @@ fn run(timeline: &mut Timeline) {
 /// Six piles of four boxes on one ground, 60 frames of them.
 fn piles() -> Timeline {
     let settings = TimelineSettings { lookahead: 60, past: 1000, ..TimelineSettings::default() };
-    let mut timeline = Timeline::new(&scenes::piles(), Environment::default(), settings).unwrap();
+    let mut timeline =
+        Timeline::new(&scenes::all().swap_remove(0).1, Environment::default(), settings).unwrap();
     run(&mut timeline);
     timeline
 }
@@ -55,16 +56,16 @@ fn a_frame_is_looked_into_as_it_was_stepped() {
 #[test]
 fn areas_have_the_bodies_that_visit_them_and_clocks_that_commands_set_back() {
     let ball = |x: f32, y: f32| BodyDef::new(Shape::Sphere(Sphere { radius: 0.5 })).at(Vec3::new(x, y, 0.5));
-    let bodies = [BodyDef::fixed(Shape::HalfSpace), ball(0.5, 0.5), ball(40.5, 5.0)];
-    let settings = TimelineSettings { lookahead: 60, area_m: Some(2.0), ..TimelineSettings::default() };
+    let bodies = [BodyDef::fixed(Shape::HalfSpace), ball(0.5, 0.5), ball(40.5, 100.0)];
+    let settings = TimelineSettings { lookahead: 160, area_m: Some(2.0), ..TimelineSettings::default() };
     let mut timeline = Timeline::new(&bodies, Environment::default(), settings).unwrap();
     run(&mut timeline);
     let snapshot = timeline.snapshot();
-    let areas = snapshot.areas(Frame(10));
-    assert!(areas.iter().all(|area| area.clock == Frame(60) && area.visitors == 1));
+    let areas = snapshot.areas(Frame(150));
+    assert!(areas.iter().all(|area| area.clock == Frame(160) && area.visitors == 1));
     assert!(areas.windows(2).all(|pair| pair[0].area < pair[1].area));
     for body in [1, 2] {
-        let position = snapshot.state(BodyId(body), Frame(10)).unwrap().position;
+        let position = snapshot.state(BodyId(body), Frame(150)).unwrap().position;
         let here = areas.iter().find(|area| {
             let (min, max) = (area.bounds.min, area.bounds.max);
             min.cmple(position).all() && position.cmplt(max).all()
@@ -72,23 +73,23 @@ fn areas_have_the_bodies_that_visit_them_and_clocks_that_commands_set_back() {
         let here = here.expect("it is somewhere");
         assert_eq!(here.bounds.max - here.bounds.min, Vec3::splat(2.0));
         assert_eq!(here.area.map(|c| 2.0 * c as f32), here.bounds.min.to_array());
-        // The one that lies is not active, the one that falls is.
+        // The one that lies, and has come to rest, is not active; the one that falls is.
         assert_eq!(here.active, body == 2, "{here:?}");
     }
-    assert_eq!(snapshot.areas(Frame(61)), []);
-    assert_eq!(timeline.areas_active(Frame(10)) as usize, areas.iter().filter(|area| area.active).count());
+    assert_eq!(snapshot.areas(Frame(161)), []);
+    assert_eq!(timeline.areas_active(Frame(150)) as usize, areas.iter().filter(|area| area.active).count());
     // A command puts the areas of its body out of date, and no others.
     timeline
-        .change(Frame(30), Change::Push { body: BodyId(2), impulse: Vec3::X * 400.0, at_point: None })
+        .change(Frame(155), Change::Push { body: BodyId(2), impulse: Vec3::X * 400.0, at_point: None })
         .unwrap();
     let clocks = |areas: Vec<forerun_timeline::InspectedArea>| -> Vec<([i32; 3], Frame)> {
-        areas.iter().filter(|area| area.clock < Frame(60)).map(|area| (area.area, area.clock)).collect()
+        areas.iter().filter(|area| area.clock < Frame(160)).map(|area| (area.area, area.clock)).collect()
     };
-    let waiting = clocks(timeline.snapshot().areas(Frame(29)));
-    assert!(!waiting.is_empty() && waiting.iter().all(|(area, clock)| area[0] >= 18 && *clock == Frame(29)));
+    let waiting = clocks(timeline.snapshot().areas(Frame(154)));
+    assert!(!waiting.is_empty() && waiting.iter().all(|(area, clock)| area[0] >= 18 && *clock == Frame(154)));
     assert_eq!(waiting, timeline.area_clocks());
     run(&mut timeline);
-    assert_eq!(clocks(timeline.snapshot().areas(Frame(29))), []);
+    assert_eq!(clocks(timeline.snapshot().areas(Frame(154))), []);
 }
 
 #[test]
@@ -115,7 +116,7 @@ fn snapshots_know_the_commands_what_they_cost_and_what_waits() {
     assert_eq!(undone.commands().map(|(key, _)| *key).collect::<Vec<_>>(), [early]);
     run(&mut timeline);
     assert!(timeline.snapshot().edits().eq(timeline.edits()));
-    assert_eq!(timeline.snapshot().edits().map(|edit| edit.commands).collect::<Vec<_>>(), [2, 1]);
+    assert_eq!(timeline.snapshot().edits().map(|edit| edit.commands).collect::<Vec<_>>(), [3, 1]);
     // What was taken before has not changed.
     assert_eq!(snapshot.commands().count(), 3);
     timeline.set_display(Frame(60));
@@ -128,7 +129,8 @@ fn snapshots_know_the_commands_what_they_cost_and_what_waits() {
 #[test]
 fn commands_that_are_no_longer_kept_are_forgotten_by_later_snapshots() {
     let settings = TimelineSettings { lookahead: 60, past: 5, ..TimelineSettings::default() };
-    let mut timeline = Timeline::new(&scenes::piles(), Environment::default(), settings).unwrap();
+    let mut timeline =
+        Timeline::new(&scenes::all().swap_remove(0).1, Environment::default(), settings).unwrap();
     for frame in [3, 9] {
         timeline.change(Frame(frame), push(4, 100.0)).unwrap();
     }
