@@ -11,7 +11,9 @@ pub mod body_def;
 pub mod bounds;
 pub mod broad_phase;
 mod carried;
+mod close_up;
 pub mod detection;
+pub mod inspect;
 pub mod meter;
 pub mod narrow_phase;
 mod plan;
@@ -31,6 +33,7 @@ pub use forerun_lanes as lanes;
 
 pub use body::{Body, BodyId, BodyKind, Material, Spring};
 pub use body_def::{BodyDef, BodyError, Mass};
+pub use inspect::{InspectedBody, InspectedContact, InspectedIsland, InspectedPoint, Inspection, inspect};
 pub use scratch::StepScratch;
 pub use settings::{Environment, EnvironmentError, ShockPropagation, StepSettings};
 pub use stage::{Observer, Stage, Unobserved};

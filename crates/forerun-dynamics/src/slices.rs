@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::bounds::swept_bound;
 use crate::carried::Carried;
+use crate::close_up::CloseUp;
 use crate::narrow_phase::Contact;
 use crate::plan::{Plan, half_thickness, pack};
 use crate::solver::{Batch, Ends, rest_after_slices};
@@ -42,8 +43,39 @@ pub(crate) struct Run<'a> {
     pub(crate) next: &'a mut [BodyState],
     /// Where somebody asks for touches.
     pub(crate) notes: Option<Ledger>,
+    /// Where somebody looks into the step.
+    pub(crate) close_up: Option<CloseUp>,
     /// Islands that ended too deep and may still be cut finer.
     pub(crate) too_deep: Vec<u32>,
+}
+
+/// What batches add up for those who ask.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Recorded {
+    Nothing,
+    Impulses,
+    Friction,
+}
+
+impl Run<'_> {
+    fn recorded(&self) -> Recorded {
+        match (&self.close_up, &self.notes) {
+            (Some(_), _) => Recorded::Friction,
+            (None, Some(_)) => Recorded::Impulses,
+            (None, None) => Recorded::Nothing,
+        }
+    }
+}
+
+impl Recorded {
+    fn by(self, batch: &mut Batch) {
+        if self != Recorded::Nothing {
+            batch.record_impulses();
+        }
+        if self == Recorded::Friction {
+            batch.record_friction();
+        }
+    }
 }
 
 /// What a batch is made from, slice after slice.
@@ -77,6 +109,9 @@ impl<'a> Slicer<'a> {
             batches.resize_with(batches.len().max(count), Batch::default);
             let mut parts = self.parts(chosen, &scratch.packed);
             for slice in 0..self.count {
+                if let Some(close_up) = &mut run.close_up {
+                    close_up.slice = slice;
+                }
                 batches = self.slice(&mut parts, slice + 1 == self.count, batches, run);
             }
         }
@@ -96,15 +131,13 @@ impl<'a> Slicer<'a> {
     where
         'a: 'b,
     {
-        let notes = run.notes.is_some();
+        let recorded = run.recorded();
         for packed in packed.chunks(wave()) {
             let used = &mut batches[..packed.len()];
             each(used, |(k, batch)| {
                 self.gather(&chosen[packed[k].clone()], batch);
                 batch.start(self.environment, self.group.contacts);
-                if notes {
-                    batch.record_impulses();
-                }
+                recorded.by(batch);
             });
             solve(used, run.observer);
             for batch in used {
@@ -225,13 +258,11 @@ impl<'a> Slicer<'a> {
             parts.iter_mut().map(|part| std::mem::take(&mut part.carried.contacts)).collect();
         let mut batches: Vec<Batch> = batches.into_iter().map(Batch::emptied).collect();
         let used = &mut batches[..parts.len()];
-        let notes = run.notes.is_some();
+        let recorded = run.recorded();
         each(used, |(k, batch)| {
             parts[k].fill(batch, &found[k]);
             batch.start(&environment, &found[k]);
-            if notes {
-                batch.record_impulses();
-            }
+            recorded.by(batch);
         });
         run.observer.after(Stage::Collisions);
         solve(used, run.observer);
@@ -280,6 +311,10 @@ impl<'a> Slicer<'a> {
     fn note(&self, batch: &Batch, run: &mut Run) {
         if let Some(notes) = &mut run.notes {
             notes.note(batch, |ends| self.island_of(batch, ends));
+        }
+        if let Some(close_up) = &mut run.close_up {
+            let island_of = |i: u32| self.plan.island_of[batch.sources[i as usize] as usize];
+            close_up.note(batch, island_of, |ends| self.island_of(batch, ends));
         }
     }
 

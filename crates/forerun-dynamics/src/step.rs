@@ -2,6 +2,7 @@
 
 use forerun_geometry::Vec3;
 
+use crate::close_up::CloseUp;
 use crate::narrow_phase::Contact;
 use crate::plan::Plan;
 use crate::scratch::StepScratch;
@@ -99,6 +100,8 @@ pub(crate) struct Known<'a> {
     pub(crate) touches: Option<&'a mut Touches>,
     /// By member, or empty: whether it is known to stay at rest. Then the group has no pairs of it.
     pub(crate) still: &'a [bool],
+    /// Where somebody looks into the step.
+    pub(crate) close_up: Option<&'a mut CloseUp>,
 }
 
 /// As [`advance`]; tells who touched whom where somebody asks. The states are the scratch's.
@@ -106,7 +109,7 @@ pub(crate) fn advance_islands(
     group: &Group,
     environment: &Environment,
     observer: &mut dyn Observer,
-    Known { touches, still }: Known,
+    Known { touches, still, mut close_up }: Known,
     scratch: &mut StepScratch,
 ) -> StepReport {
     if environment.check().is_err() {
@@ -137,10 +140,15 @@ pub(crate) fn advance_islands(
         if !chosen.is_empty() {
             report.slices_max = count;
             let notes = ledger.is_some().then(Ledger::default);
-            let mut run = Run { observer: &mut *observer, next, notes, too_deep: Vec::new() };
+            let of_run = close_up.is_some().then(CloseUp::default);
+            let mut run =
+                Run { observer: &mut *observer, next, notes, close_up: of_run, too_deep: Vec::new() };
             Slicer { group, environment, plan, count }.run(chosen, &mut run, slices);
             if let (Some(ledger), Some(notes)) = (&mut ledger, run.notes) {
                 ledger.keep(notes, &run.too_deep);
+            }
+            if let (Some(close_up), Some(of_run)) = (&mut close_up, run.close_up) {
+                close_up.keep(of_run, &run.too_deep);
             }
             // The return in time: the frame of these islands is thrown away and done again in smaller parts.
             for island in run.too_deep {

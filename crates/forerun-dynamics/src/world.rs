@@ -37,6 +37,24 @@ impl World {
         Ok(BodyId(self.bodies.len() as u32 - 1))
     }
 
+    /// Puts in a body that was made before, in some state.
+    pub fn put(&mut self, body: Body, state: BodyState) -> BodyId {
+        self.bodies.push(body);
+        self.states.push(state);
+        self.stillness.forget();
+        BodyId(self.bodies.len() as u32 - 1)
+    }
+
+    /// Takes a body out; those after it have ids that are one less from then on. `None` when there is no such body.
+    pub fn remove(&mut self, body: BodyId) -> Option<(Body, BodyState)> {
+        let place = body.0 as usize;
+        if place >= self.bodies.len() {
+            return None;
+        }
+        self.stillness.forget();
+        Some((self.bodies.remove(place), self.states.remove(place)))
+    }
+
     /// All bodies, in the order of their ids.
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
@@ -102,7 +120,7 @@ impl World {
         detection.find_contacts(&members, environment);
         observer.after(Stage::Collisions);
         let group = Group { members: &members, pairs: &detection.pairs, contacts: &detection.contacts };
-        let known = Known { still: &stillness.still, touches };
+        let known = Known { still: &stillness.still, touches, close_up: None };
         let report = advance_islands(&group, environment, observer, known, scratch);
         scratch.members = emptied(members);
         stillness.note((states, &scratch.next), &scratch.plan.resting, environment);

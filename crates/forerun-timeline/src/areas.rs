@@ -65,10 +65,17 @@ pub(crate) enum Until {
 /// Areas with their visitors, sorted by body.
 type Visits = BTreeMap<Area, Vec<Visit>>;
 
+/// The areas themselves, whoever visits them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Grid {
+    /// Edge of an area. Metres, above 0.
+    edge_m: f32,
+}
+
 /// All areas with a visitor. A copy shares what neither side has written since.
 #[derive(Clone, Debug)]
 pub(crate) struct Areas {
-    edge_m: f32,
+    grid: Grid,
     /// By [`part_of`] an area.
     parts: Vec<Arc<Visits>>,
     /// Bodies over more than [`AREAS_MAX`] areas, sorted by body.
@@ -83,12 +90,13 @@ impl Areas {
     /// No visitors. The edge of an area is in metres, above 0.
     pub(crate) fn new(edge_m: f32) -> Areas {
         let parts = (0..PARTS).map(|_| Arc::default()).collect();
-        Areas { edge_m, parts, large: Vec::new(), last: SharedList::default(), next_forgotten: 0 }
+        let grid = Grid { edge_m };
+        Areas { grid, parts, large: Vec::new(), last: SharedList::default(), next_forgotten: 0 }
     }
 
     /// A body has this bound at a frame; `None` when it is not there.
     pub(crate) fn visit(&mut self, body: BodyId, frame: Frame, bound: Option<&Aabb>, until: Until) {
-        let cover = bound.map(|bound| self.cover(bound));
+        let cover = bound.map(|bound| self.grid.cover(bound));
         if until == Until::NextFrame {
             if let Some(cover) = cover {
                 self.for_each_list(cover, |list| extend(list, body, frame, frame.next()));
@@ -114,7 +122,7 @@ impl Areas {
     pub(crate) fn near(&self, frame: Frame, bounds: &[Aabb], found: &mut Vec<BodyId>) -> bool {
         let mut areas: Vec<Area> = Vec::with_capacity(4 * bounds.len());
         for bound in bounds {
-            let Cover::Areas { min, max } = self.cover(bound) else { return false };
+            let Cover::Areas { min, max } = self.grid.cover(bound) else { return false };
             areas.extend(areas_between(min, max));
         }
         // Neighbours share areas, and an area has many visitors: each is asked once.
@@ -128,13 +136,9 @@ impl Areas {
         true
     }
 
-    /// The areas that a bound covers; none when they are too many to list.
-    pub(crate) fn covered(&self, bound: &Aabb) -> impl Iterator<Item = Area> + use<> {
-        let corners = match self.cover(bound) {
-            Cover::Areas { min, max } => Some((min, max)),
-            Cover::Large => None,
-        };
-        corners.into_iter().flat_map(|(min, max)| areas_between(min, max))
+    /// The areas themselves.
+    pub(crate) fn grid(&self) -> Grid {
+        self.grid
     }
 
     /// Forgets, bit by bit, the visits that ended by `oldest`.
@@ -153,7 +157,36 @@ impl Areas {
         self.large.retain(|v| v.leaves > oldest);
     }
 
-    fn cover(&self, bound: &Aabb) -> Cover {
+    fn for_each_list(&mut self, cover: Cover, mut act: impl FnMut(&mut Vec<Visit>)) {
+        match cover {
+            Cover::Large => act(&mut self.large),
+            Cover::Areas { min, max } => {
+                for area in areas_between(min, max) {
+                    act(Arc::make_mut(&mut self.parts[part_of(&area)]).entry(area).or_default());
+                }
+            }
+        }
+    }
+}
+
+impl Grid {
+    /// The areas that a bound covers; none when they are too many to list.
+    pub(crate) fn covered(self, bound: &Aabb) -> impl Iterator<Item = Area> + use<> {
+        let corners = match self.cover(bound) {
+            Cover::Areas { min, max } => Some((min, max)),
+            Cover::Large => None,
+        };
+        corners.into_iter().flat_map(|(min, max)| areas_between(min, max))
+    }
+
+    /// Where an area is.
+    pub(crate) fn bounds(self, area: Area) -> Aabb {
+        let corner = area.map(|coordinate| coordinate as f32 * self.edge_m);
+        let min = Vec3::from_array(corner);
+        Aabb { min, max: min + Vec3::splat(self.edge_m) }
+    }
+
+    fn cover(self, bound: &Aabb) -> Cover {
         // Rounding down and limiting keep the order, so bounds that overlap share an area.
         let cell = |v: Vec3| {
             let scaled = (v / self.edge_m).floor().clamp(Vec3::splat(-AREA_LIMIT), Vec3::splat(AREA_LIMIT));
@@ -166,17 +199,6 @@ impl Areas {
             Cover::Large
         } else {
             Cover::Areas { min, max }
-        }
-    }
-
-    fn for_each_list(&mut self, cover: Cover, mut act: impl FnMut(&mut Vec<Visit>)) {
-        match cover {
-            Cover::Large => act(&mut self.large),
-            Cover::Areas { min, max } => {
-                for area in areas_between(min, max) {
-                    act(Arc::make_mut(&mut self.parts[part_of(&area)]).entry(area).or_default());
-                }
-            }
         }
     }
 }

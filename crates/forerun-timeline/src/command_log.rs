@@ -9,38 +9,58 @@ use forerun_geometry::Vec3;
 use crate::Frame;
 use crate::command::{Change, CommandKey};
 
+/// Commands by the frame at which they act; those of a frame sorted by key. Snapshots share it: to touch it is to copy the frames, not the commands.
+pub(crate) type CommandsByFrame = BTreeMap<Frame, Arc<Vec<(CommandKey, Arc<Change>)>>>;
+
 /// The accepted commands that are not older than the oldest frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CommandLog {
-    /// Copies of a log share the changes.
-    by_key: BTreeMap<CommandKey, Arc<Change>>,
+    by_frame: Arc<CommandsByFrame>,
     by_body: BTreeSet<(BodyId, CommandKey)>,
 }
 
 impl CommandLog {
     pub(crate) fn contains(&self, key: &CommandKey) -> bool {
-        self.by_key.contains_key(key)
+        self.get(key).is_some()
     }
 
     pub(crate) fn get(&self, key: &CommandKey) -> Option<&Change> {
-        self.by_key.get(key).map(AsRef::as_ref)
+        let commands = self.by_frame.get(&key.frame)?;
+        let place = commands.binary_search_by_key(key, |(key, _)| *key).ok()?;
+        Some(commands[place].1.as_ref())
+    }
+
+    /// All commands, to be shared.
+    pub(crate) fn by_frame(&self) -> &Arc<CommandsByFrame> {
+        &self.by_frame
     }
 
     /// Whether a command acts at or before a frame.
     pub(crate) fn begins_by(&self, frame: Frame) -> bool {
-        self.by_key.first_key_value().is_some_and(|(key, _)| key.frame <= frame)
+        self.by_frame.first_key_value().is_some_and(|(first, _)| *first <= frame)
     }
 
     pub(crate) fn insert(&mut self, key: CommandKey, change: Change) {
         if let Some(body) = change.body() {
             self.by_body.insert((body, key));
         }
-        self.by_key.insert(key, Arc::new(change));
+        let commands = Arc::make_mut(&mut self.by_frame).entry(key.frame).or_default();
+        let commands = Arc::make_mut(commands);
+        match commands.binary_search_by_key(&key, |(key, _)| *key) {
+            Ok(place) => commands[place].1 = Arc::new(change),
+            Err(place) => commands.insert(place, (key, Arc::new(change))),
+        }
     }
 
     /// Takes a command back; what it was.
     pub(crate) fn remove(&mut self, key: &CommandKey) -> Option<Change> {
-        let change = Arc::unwrap_or_clone(self.by_key.remove(key)?);
+        let place = self.by_frame.get(&key.frame)?.binary_search_by_key(key, |(key, _)| *key).ok()?;
+        let by_frame = Arc::make_mut(&mut self.by_frame);
+        let commands = Arc::make_mut(by_frame.get_mut(&key.frame)?);
+        let change = Arc::unwrap_or_clone(commands.remove(place).1);
+        if commands.is_empty() {
+            by_frame.remove(&key.frame);
+        }
         if let Some(body) = change.body() {
             self.by_body.remove(&(body, *key));
         }
@@ -49,7 +69,8 @@ impl CommandLog {
 
     /// The commands of a frame in the order in which they act.
     pub(crate) fn at(&self, frame: Frame) -> impl Iterator<Item = &Change> {
-        self.by_key.range(first_key(frame)..=last_key(frame)).map(|(_, change)| change.as_ref())
+        let commands = self.by_frame.get(&frame);
+        commands.into_iter().flat_map(|commands| commands.iter()).map(|(_, change)| change.as_ref())
     }
 
     /// The commands to one body at a frame in the order in which they act.
@@ -70,7 +91,8 @@ impl CommandLog {
 
     /// The changes of gravity at a frame or later.
     pub(crate) fn gravities_from(&self, frame: Frame) -> impl Iterator<Item = (Frame, Vec3)> {
-        self.by_key.range(first_key(frame)..).filter_map(|(key, change)| match change.as_ref() {
+        let later = self.by_frame.range(frame..).flat_map(|(_, commands)| commands.iter());
+        later.filter_map(|(key, change)| match change.as_ref() {
             // Adding +0 makes -0 positive: equal gravity has equal bits.
             Change::SetGravity { gravity } => Some((key.frame, *gravity + Vec3::ZERO)),
             _ => None,
@@ -89,22 +111,29 @@ impl CommandLog {
 
     /// All commands in the order in which they act.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&CommandKey, &Change)> {
-        self.by_key.iter().map(|(key, change)| (key, change.as_ref()))
+        in_order(&self.by_frame)
     }
 
     /// Forgets the commands at or before `oldest`; the bodies they changed.
     pub(crate) fn forget_to(&mut self, oldest: Frame) -> BTreeSet<BodyId> {
-        let kept = self.by_key.split_off(&first_key(oldest.next()));
-        let forgotten = std::mem::replace(&mut self.by_key, kept);
+        let by_frame = Arc::make_mut(&mut self.by_frame);
+        let kept = by_frame.split_off(&oldest.next());
+        let forgotten = std::mem::replace(by_frame, kept);
         let mut bodies = BTreeSet::new();
-        for (key, change) in forgotten {
+        for (key, change) in forgotten.values().flat_map(|commands| commands.iter()) {
             if let Some(body) = change.body() {
-                self.by_body.remove(&(body, key));
+                self.by_body.remove(&(body, *key));
                 bodies.insert(body);
             }
         }
         bodies
     }
+}
+
+/// Commands in the order in which they act.
+pub(crate) fn in_order(commands: &CommandsByFrame) -> impl Iterator<Item = (&CommandKey, &Change)> {
+    let all = commands.values().flat_map(|commands| commands.iter());
+    all.map(|(key, change)| (key, change.as_ref()))
 }
 
 fn first_key(frame: Frame) -> CommandKey {

@@ -156,13 +156,14 @@ impl Timeline {
     fn note_edit(&mut self, frame: Frame, is_new: bool) {
         let bodies = self.table(self.horizon()).population() as u64;
         let horizon = self.horizon();
+        let edits = Arc::make_mut(&mut self.edits);
         if is_new {
-            if self.edits.len() == EDITS_KEPT {
-                self.edits.pop_front();
+            if edits.len() == EDITS_KEPT {
+                edits.pop_front();
             }
-            self.edits.push_back(Edit { frame, ..Edit::default() });
+            edits.push_back(Edit { frame, ..Edit::default() });
         }
-        if let Some(edit) = self.edits.back_mut() {
+        if let Some(edit) = edits.back_mut() {
             edit.frame = edit.frame.min(frame);
             edit.commands += 1;
             edit.full = bodies * (horizon.since(edit.frame) + 1);

@@ -6,9 +6,11 @@ use std::sync::Arc;
 use forerun_dynamics::{Body, BodyId, BodyState, Environment};
 use forerun_geometry::{Pose, Vec3};
 
+use crate::areas::Grid;
 use crate::commanding::FrameEffects;
 use crate::definitions::Definitions;
 use crate::frame_table::FrameTable;
+use crate::marks::Marks;
 use crate::tables::Tables;
 use crate::{Frame, Timeline, sample};
 
@@ -48,13 +50,16 @@ pub struct Sample {
 /// Making one costs a reference count per frame in which something moved; it never changes and has no locks.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    valid_to: Frame,
+    pub(crate) valid_to: Frame,
     pub(crate) tables: Tables,
-    definitions: Arc<Definitions>,
+    pub(crate) definitions: Arc<Definitions>,
     /// The bodies that wait to be recomputed. Sorted by body.
     pub(crate) doubtful: Vec<Doubt>,
     /// What the commands of each frame did.
     pub(crate) effects: Arc<BTreeMap<Frame, Arc<FrameEffects>>>,
+    /// What the display marks along the time.
+    pub(crate) marks: Marks,
+    pub(crate) grid: Grid,
 }
 
 /// A body that waits to be recomputed.
@@ -77,6 +82,8 @@ impl Timeline {
             definitions: Arc::clone(&self.definitions),
             doubtful: self.doubtful(),
             effects: Arc::clone(&self.effects),
+            marks: self.marks(),
+            grid: self.areas.grid(),
         })
     }
 
@@ -242,8 +249,10 @@ impl Snapshot {
         found.ok().map(|index| &self.doubtful[index])
     }
 
-    /// The last frame at which a body is known to be true.
-    pub(crate) fn known_to(&self, body: BodyId) -> Frame {
+    /// The last frame at which a body is known to be true. Bodies that wait for others may still come out otherwise: beyond
+    /// [`valid_to`](Snapshot::valid_to) this is what is known by now.
+    #[must_use]
+    pub fn known_to(&self, body: BodyId) -> Frame {
         self.doubt(body).map_or_else(|| self.horizon(), |doubt| doubt.known_to)
     }
 

@@ -79,7 +79,7 @@ pub struct Timeline {
     pub(crate) next_sequence: u64,
     pub(crate) stats: Stats,
     /// The last edits; the last is the one that is being worked off, if any is.
-    pub(crate) edits: VecDeque<Edit>,
+    pub(crate) edits: Arc<VecDeque<Edit>>,
     /// Whether the lookahead was cut for lack of memory since the display last moved.
     pub(crate) shrunk: bool,
     /// Whether past was forgotten for lack of memory that the number of frames would keep.
@@ -126,7 +126,7 @@ impl Timeline {
             step_scratch: StepScratch::default(),
             next_sequence: 0,
             stats: Stats::default(),
-            edits: VecDeque::new(),
+            edits: Arc::default(),
             shrunk: false,
             memory_cut: false,
             mutation: Mutation::None,
@@ -257,7 +257,7 @@ impl Timeline {
             self.stats.ahead.add(done, quarantined);
         } else {
             self.stats.edits.add(done, quarantined);
-            if let Some(edit) = self.edits.back_mut() {
+            if let Some(edit) = Arc::make_mut(&mut self.edits).back_mut() {
                 edit.add(done);
             }
         }

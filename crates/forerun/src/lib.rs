@@ -75,11 +75,13 @@ pub use forerun_scene as scene;
 pub use forerun_timeline as timeline;
 
 pub use driver::{
-    AdoptError, Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings, DriverError, Fork,
-    FrameNote, Hinder, Offset, Picture, Refusal, StepLimits, Threads, ThreadsError,
+    AdoptError, Answer, Answered, Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings,
+    DriverError, Fork, FrameNote, Hinder, InquiryError, Offset, Picture, Question, Refusal, StageTimes,
+    StepLimits, Threads, ThreadsError, Ticket,
 };
 pub use forerun_dynamics::{
-    Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, Mass, Material,
+    Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, InspectedBody,
+    InspectedContact, InspectedIsland, InspectedPoint, Inspection, Mass, Material, Spring, Stage,
     StepSettings, World,
 };
 pub use forerun_geometry::shape::{Capsule, Cuboid, Cylinder, Sphere};
@@ -87,8 +89,9 @@ pub use forerun_geometry::{Aabb, Pose, Quat, Ray, Shape, Vec3};
 pub use forerun_scene::{Scene, SceneError};
 pub use forerun_timeline::{
     BodyHit, Certainty, Change, Command, CommandError, CommandKey, ContactEvent, ContactKind,
-    ContactListener, ContactNotice, Difference, Edit, Frame, Keep, LateEdits, ListenerSettings, Order,
-    Sample, Snapshot, Stats, Timeline, TimelineSettings, Touch,
+    ContactListener, ContactNotice, Difference, Edit, Frame, FrameInspection, InspectedArea, Keep, LateEdits,
+    ListenerSettings, Order, Preview, PreviewRun, Previewed, Sample, Snapshot, Stats, Timeline,
+    TimelineSettings, Touch, Trail,
 };
 pub use playback::{
     DriverKind, Playback, PlaybackError, PlaybackSettings, QueueRow, Report, play, write_queue_csv,

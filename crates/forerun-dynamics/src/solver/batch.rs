@@ -12,7 +12,7 @@ use super::collisions::{Ahead, Moving};
 use super::contact_graph::ContactGraph;
 use super::descent::{Descent, Sweeps};
 use super::energy_guard::{EnergyGuard, Guarded, Guarding};
-use super::impulses::ImpulseSums;
+use super::impulses::{FrictionSums, ImpulseSums, Sums};
 use super::islands::Islands;
 use super::load::{LoadPass, Loads};
 use super::manifolds::Source;
@@ -87,6 +87,8 @@ pub(crate) struct Batch<'a> {
     pub(crate) environment: Environment,
     /// By contact; see [`Batch::record_impulses`].
     pub(crate) impulses: ImpulseSums,
+    /// By contact; see [`Batch::record_friction`].
+    pub(crate) frictions: FrictionSums,
     /// By member: the state at the end.
     pub(crate) next: Vec<BodyState>,
     bodies: Bodies,
@@ -125,6 +127,7 @@ impl<'a> Batch<'a> {
         let turns = |m: &Member| m.drives() && m.state.angular_velocity != Vec3::ZERO;
         self.carries = self.members.iter().any(turns);
         self.impulses.clear();
+        self.frictions.clear();
         self.find_driven();
     }
 
@@ -138,6 +141,7 @@ impl<'a> Batch<'a> {
             islands: self.islands,
             environment: self.environment,
             impulses: self.impulses,
+            frictions: self.frictions,
             next: self.next,
             bodies: self.bodies,
             least_gap: 0.0,
@@ -167,6 +171,16 @@ impl<'a> Batch<'a> {
     /// Has what contacts push with added up. The classic shock propagation's impulses, which act on velocities, are not among it.
     pub(crate) fn record_impulses(&mut self) {
         fill(&mut self.impulses, self.ends.len(), [0.0; 4]);
+    }
+
+    /// Has what contacts rub with added up too. Asks for [`Batch::record_impulses`].
+    pub(crate) fn record_friction(&mut self) {
+        fill(&mut self.frictions, self.ends.len(), Vec3::ZERO);
+    }
+
+    /// Who rests on whom, once stage 3 is over.
+    pub(crate) fn graph(&self) -> &ContactGraph {
+        &self.graph
     }
 
     fn substep_seconds(&self) -> f32 {
@@ -245,7 +259,8 @@ impl<'a> Batch<'a> {
         let settings = self.environment.settings;
         let h = self.substep_seconds();
         let at = Guarding { islands: &self.islands, driven: &self.driven };
-        let (rows, bodies, impulses) = (&mut self.rows, &mut self.bodies, &mut self.impulses);
+        let (rows, bodies) = (&mut self.rows, &mut self.bodies);
+        let (normal, friction) = (&mut self.impulses, &mut self.frictions);
         let least_gap = &mut self.least_gap;
         let (guard, descent) = (&mut self.guard, &mut self.descent);
         let mut standing = StandingPass { guard, descent, at, kicks: &bodies.kicks };
@@ -261,7 +276,8 @@ impl<'a> Batch<'a> {
                     let Bodies { velocities, displacements, kicks, .. } = &mut *bodies;
                     let ahead = ahead(displacements, kicks, &settings, (bounces, carries));
                     let velocities = cells(velocities);
-                    rows.resolve_collisions(&mut Moving { velocities, ahead, bounced: &mut *impulses });
+                    let bounced = Sums { normal: &mut *normal, friction: &mut *friction };
+                    rows.resolve_collisions(&mut Moving { velocities, ahead, bounced });
                 }
                 if substep == 1 {
                     rows.remove_momentum(&mut bodies.pushes);
@@ -283,7 +299,7 @@ impl<'a> Batch<'a> {
                 let ahead = ahead(displacements, kicks, &settings, (bounces, carries));
                 *least_gap = rows.relax(velocities, &ahead, team);
                 note_pushes(bodies);
-                rows.add_impulses(impulses);
+                rows.add_impulses(&mut Sums { normal, friction });
                 if settings.shock_propagation == ShockPropagation::Classic {
                     rows.propagate_classic(&mut bodies.velocities, &bodies.displacements, h);
                 }

@@ -6,7 +6,7 @@
 use std::cell::Cell;
 
 use super::blocks::{Block, BlocksOf, Detail, DetailsOf};
-use super::impulses;
+use super::impulses::{self, Sums};
 use super::points::{Kind, Point, sum};
 use super::sides::Sides;
 use super::sweep::{coupling, friction, slip};
@@ -22,7 +22,7 @@ pub(crate) struct Moving<'a> {
     pub(crate) velocities: &'a [Cell<Row>],
     pub(crate) ahead: Ahead<'a>,
     /// Where bounces are added up; empty where nobody asks.
-    pub(crate) bounced: &'a mut [[f32; 4]],
+    pub(crate) bounced: Sums<'a>,
 }
 
 /// How far the bodies have come, and what will move them.
@@ -100,12 +100,15 @@ fn collide<F: Lanes, K: Kind>(block: &Block<F, K>, detail: &Detail<F>, moving: &
         return false;
     }
     let impulses = bounce(block, &hits, all, &mut lacking);
-    if !moving.bounced.is_empty() {
-        impulses::add(moving.bounced, &detail.source, &impulses);
+    if !moving.bounced.normal.is_empty() {
+        impulses::add(moving.bounced.normal, &detail.source, &impulses);
     }
     // Friction of the collision alone: the impulses of the contacts are kept apart.
     let slip = slip(block, &relative, &impulses);
     let rubbed = friction(&block.friction, &slip, sum(&impulses), &[F::zero(); 3]);
+    if !moving.bounced.friction.is_empty() {
+        impulses::add_friction(moving.bounced.friction, (block, &detail.source), &rubbed);
+    }
     let mut push = Point::push(&block.points, &impulses);
     push.rub([rubbed[0], rubbed[1]], rubbed[2]);
     v.push(block, &push);

@@ -11,7 +11,7 @@ use super::bodies::Bodies;
 use super::collisions::{Ahead, Moving, resolve_collisions};
 use super::descent::{Descent, Hard, Sweeps};
 use super::energy_guard::{EnergyGuard, Guarded, Guarding};
-use super::impulses::add_substep;
+use super::impulses::{Sums, add_substep};
 use super::islands::Islands;
 use super::manifolds::Source;
 use super::overlap::overlap_growth;
@@ -117,7 +117,7 @@ impl Rows {
         least.get()
     }
 
-    pub(crate) fn add_impulses(&self, sums: &mut [[f32; 4]]) {
+    pub(crate) fn add_impulses(&self, sums: &mut Sums) {
         add_substep(sums, &self.flat);
         add_substep(sums, &self.uneven);
     }

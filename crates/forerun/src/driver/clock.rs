@@ -18,6 +18,7 @@ enum Source {
     #[allow(clippy::disallowed_types, reason = "the driver's clock is the one place that reads time")]
     System(Instant),
     Hand(Arc<Hand>),
+    Host(fn() -> f64),
 }
 
 #[derive(Debug, Default)]
@@ -40,13 +41,20 @@ impl Clock {
         Clock { source: Source::Hand(Arc::default()) }
     }
 
-    /// Time since the clock was made.
+    /// A clock that the host has: seconds that never go back, since some moment. For where there is no system clock, as in a browser.
+    #[must_use]
+    pub fn host(seconds: fn() -> f64) -> Self {
+        Clock { source: Source::Host(seconds) }
+    }
+
+    /// Time since the clock was made, or since the host's own beginning.
     #[must_use]
     pub fn now(&self) -> Duration {
         match &self.source {
             Source::System(start) => start.elapsed(),
             // A panic elsewhere leaves a Duration whole, so a poisoned lock is as good as any.
             Source::Hand(hand) => *hand.now.lock().unwrap_or_else(PoisonError::into_inner),
+            Source::Host(seconds) => Duration::try_from_secs_f64(seconds()).unwrap_or_default(),
         }
     }
 
@@ -60,11 +68,16 @@ impl Clock {
 
     /// Sleeps until the clock shows `time`; returns at once if it does already.
     ///
-    /// On a hand-turned clock somebody else must turn it.
+    /// On a hand-turned clock somebody else must turn it. A host's clock is watched without a pause: where there is no sleep, that is how to wait.
     pub fn wait_until(&self, time: Duration) {
         match &self.source {
             Source::System(start) => {
                 std::thread::sleep(time.saturating_sub(start.elapsed()));
+            }
+            Source::Host(_) => {
+                while self.now() < time {
+                    std::hint::spin_loop();
+                }
             }
             Source::Hand(hand) => {
                 let mut now = hand.now.lock().unwrap_or_else(PoisonError::into_inner);

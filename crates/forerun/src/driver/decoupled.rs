@@ -13,12 +13,14 @@ use super::blend::{Blend, Blending, Offset};
 use super::driver_error::DriverError;
 use super::fork::{Fork, Names};
 use super::hearing::{Heard, Message};
+use super::inquiry::desk::Inquiry;
 use super::pace::{Pace, Supply};
 use super::physics::{self, Hinder, Published, Shared};
 use super::picture::Picture;
 use super::reach::Reach;
 use super::refusal::Refusal;
-use crate::{BodyId, Recorder, Threads};
+use super::stage_times::StageWatch;
+use crate::{BodyId, Clock, Recorder, Threads};
 
 /// The largest queue: its memory is taken at the start, and a queue without room would never be drained.
 const COMMANDS_MAX: usize = 65_536;
@@ -41,6 +43,8 @@ pub struct DecoupledSettings {
     /// Counts the areas in which a body moved, for every frame ([`FrameNote::areas_active`](crate::FrameNote::areas_active)): costs a
     /// look at each body that moves. Default false.
     pub count_areas: bool,
+    /// Measures the stages of every computed frame with this clock: see [`Decoupled::stage_times`]. Default none: nothing is measured.
+    pub stage_clock: Option<Clock>,
     /// Writes down the session. Who keeps a clone of it [finishes](Recorder::finish) the file when the driver is dropped. Default none.
     pub recorder: Option<Recorder>,
 }
@@ -54,6 +58,7 @@ impl DecoupledSettings {
             command_capacity: 1024,
             slow_down: Duration::ZERO,
             count_areas: false,
+            stage_clock: None,
             recorder: None,
         }
     }
@@ -73,6 +78,10 @@ pub struct Decoupled {
     pace: Pace,
     blend: Blend,
     names: Arc<Names>,
+    /// The thread that answers questions, once something was asked.
+    inquiry: Option<Inquiry>,
+    /// The number of the next question.
+    tickets: u64,
 }
 
 impl Decoupled {
@@ -123,6 +132,7 @@ impl Decoupled {
             heard: Heard::new(Arc::clone(&names)),
             command_capacity: capacity,
             count_areas: settings.count_areas,
+            stage_watch: settings.stage_clock.map(StageWatch::new),
             reach,
             caught_up: true,
             pictures: 0,
@@ -142,6 +152,8 @@ impl Decoupled {
             pace: Pace::starting_at(displayed.seconds(snapshot.frame_seconds())),
             blend: Blend::default(),
             names,
+            inquiry: None,
+            tickets: 0,
         })
     }
 
@@ -280,6 +292,7 @@ impl Drop for Decoupled {
 #[cfg(test)]
 mod order_tests;
 mod orders;
+mod questions;
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "times are kept to the bit where nothing is late")]
 pub(super) mod tests;

@@ -5,6 +5,7 @@ use std::fmt;
 use forerun_dynamics::World;
 use forerun_timeline::{Change, CommandError};
 
+use super::coupled::Cast;
 use crate::BodyId;
 
 /// Why a world cannot be changed so.
@@ -14,7 +15,7 @@ pub enum ChangeError {
     UnknownBody(BodyId),
     /// A number of the change, or the body to be added, is not possible.
     Refused(CommandError),
-    /// A plain world neither removes bodies nor changes their kind.
+    /// A plain world does not change the kind of a body.
     NeedsTimeline(&'static str),
 }
 
@@ -33,19 +34,26 @@ impl fmt::Display for ChangeError {
 impl std::error::Error for ChangeError {}
 
 /// Does the change at once. A body to be added has to take the next free name.
-pub(super) fn apply(world: &mut World, change: &Change) -> Result<(), ChangeError> {
+pub(super) fn apply(world: &mut World, cast: &mut Cast, change: &Change) -> Result<(), ChangeError> {
+    let place_of = |body: BodyId| cast.place(body).ok_or(ChangeError::UnknownBody(body));
     match change {
         Change::Add { body, def } => {
-            if body.0 as usize != world.bodies().len() {
+            if *body != cast.coming_body() {
                 return Err(ChangeError::UnknownBody(*body));
             }
             world.add(def).map_err(CommandError::Body).map_err(ChangeError::Refused)?;
+            cast.add(def);
         }
-        Change::Remove { .. } => return Err(ChangeError::NeedsTimeline("remove a body")),
+        Change::Remove { body } => {
+            let place = place_of(*body)?;
+            world.remove(BodyId(place as u32));
+            cast.remove(place);
+        }
         Change::SetKind { .. } => return Err(ChangeError::NeedsTimeline("change the kind of a body")),
         Change::SetGravity { gravity } => {
             change.check_numbers().map_err(ChangeError::Refused)?;
             world.environment.gravity = *gravity;
+            cast.forget_still();
         }
         Change::Move { body, .. }
         | Change::Push { body, .. }
@@ -54,15 +62,17 @@ pub(super) fn apply(world: &mut World, change: &Change) -> Result<(), ChangeErro
         | Change::Release { body }
         | Change::SetMaterial { body, .. }
         | Change::SetForce { body, .. }
-        | Change::SetGravityScale { body, .. } => change_body(world, *body, change)?,
+        | Change::SetGravityScale { body, .. } => {
+            change_body(world, (*body, place_of(*body)?), change)?;
+            cast.forget_still();
+        }
     }
     // Who rests on the changed body, or is now in its way, is not found out here: all wake, and those who may rest again soon.
     world.states_mut().iter_mut().for_each(|state| state.rest = 0);
     Ok(())
 }
 
-fn change_body(world: &mut World, id: BodyId, change: &Change) -> Result<(), ChangeError> {
-    let place = id.0 as usize;
+fn change_body(world: &mut World, (id, place): (BodyId, usize), change: &Change) -> Result<(), ChangeError> {
     let Some((body, state)) = world.bodies().get(place).zip(world.states().get(place)) else {
         return Err(ChangeError::UnknownBody(id));
     };
@@ -77,6 +87,11 @@ mod tests {
     use super::*;
     use crate::dynamics::Unobserved;
     use crate::{BodyDef, Cuboid, Environment, Pose, Shape, Vec3};
+
+    fn apply(world: &mut World, change: &Change) -> Result<(), ChangeError> {
+        let mut cast = Cast::of(world);
+        super::apply(world, &mut cast, change)
+    }
 
     fn world() -> World {
         let mut world = World::new(Environment::default());
@@ -124,7 +139,8 @@ mod tests {
         let mut world = world();
         let before = world.states().to_vec();
         for change in [
-            Change::Remove { body: BodyId(0) },
+            Change::Remove { body: BodyId(7) },
+            Change::SetKind { body: BodyId(0), kind: crate::BodyKind::Fixed },
             Change::Release { body: BodyId(7) },
             Change::SetGravity { gravity: Vec3::NAN },
             Change::Push { body: BodyId(0), impulse: Vec3::X * f32::INFINITY, at_point: None },

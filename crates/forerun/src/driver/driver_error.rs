@@ -22,6 +22,8 @@ pub enum DriverError {
     QueueFull,
     /// The physics thread panicked: a bug. What was published before can still be shown.
     Panicked(String),
+    /// The thread that answers questions panicked: a bug. Physics and pictures go on.
+    AnswersPanicked(String),
 }
 
 impl fmt::Display for DriverError {
@@ -34,6 +36,9 @@ impl fmt::Display for DriverError {
                 f.write_str("the command queue is full: physics is behind; try again after the next picture")
             }
             DriverError::Panicked(message) => write!(f, "the physics thread panicked: {message}"),
+            DriverError::AnswersPanicked(message) => {
+                write!(f, "the thread that answers questions panicked: {message}")
+            }
         }
     }
 }

@@ -34,6 +34,11 @@ impl Names {
         BodyId(self.body.fetch_add(1, Ordering::Relaxed))
     }
 
+    /// The next name that is given.
+    pub(super) fn coming_body(&self) -> BodyId {
+        BodyId(self.body.load(Ordering::Relaxed))
+    }
+
     /// Lets a timeline know the names up to that of a body which an order adds. Bodies are named from here for all forks, added to a few of them,
     /// and refused where their names are too far ahead.
     pub(super) fn reserve_for(&self, timeline: &mut Timeline, order: &Order) {

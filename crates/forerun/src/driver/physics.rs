@@ -12,14 +12,16 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
 
-use arc_swap::ArcSwap;
+use arc_swap::{ArcSwap, ArcSwapOption};
 use forerun_timeline::{Frame, Order, Progress, Snapshot, Stats, Timeline};
 
 use super::fork::Fork;
 use super::frame_notes::{FrameNote, FrameNotes};
 use super::hearing::{Heard, Message};
+use super::inquiry::desk::AskedPreview;
 use super::reach::Reach;
 use super::refusal::Refusal;
+use super::stage_times::{StageTimesRing, StageWatch};
 use crate::{Recorder, Threads};
 
 /// Frames whose notes are kept, at most: their memory is taken at the start, while of states bytes may bound what is kept.
@@ -41,6 +43,9 @@ pub(super) struct Shared {
     /// The root that the display takes.
     pub(super) published: ArcSwap<Published>,
     pub(super) notes: FrameNotes,
+    pub(super) stage_times: StageTimesRing,
+    /// The newest preview that waits for a fork.
+    preview: ArcSwapOption<AskedPreview>,
     /// Message of a panic of the physics thread; locked only after it has ended.
     pub(super) panic: Mutex<Option<String>>,
     /// The earliest frame up to which all was true right after commands were heard, since the display last asked.
@@ -66,6 +71,8 @@ impl Shared {
                 stats: timeline.stats(),
             }),
             notes: FrameNotes::with_capacity(notes_kept.min(NOTES_MAX)),
+            stage_times: StageTimesRing::new(),
+            preview: ArcSwapOption::empty(),
             panic: Mutex::new(None),
             dropped_to: AtomicU64::new(u64::MAX),
             display: AtomicU64::new(timeline.display().0),
@@ -96,6 +103,17 @@ impl Shared {
         Some(self.dropped_to.swap(u64::MAX, Ordering::Relaxed)).filter(|frame| *frame != u64::MAX).map(Frame)
     }
 
+    /// Asks for a fork for a preview; an older one that still waits is forgotten.
+    pub(super) fn ask_preview(&self, asked: AskedPreview) {
+        self.preview.store(Some(Arc::new(asked)));
+        self.wake();
+    }
+
+    fn take_preview(&self) -> Option<Arc<AskedPreview>> {
+        // A look is cheaper than a swap, and nearly always there is nothing.
+        if self.preview.load().is_none() { None } else { self.preview.swap(None) }
+    }
+
     /// Asks the physics to end.
     pub(super) fn stop(&self) {
         self.stopping.store(true, Ordering::Relaxed);
@@ -122,6 +140,7 @@ pub(super) struct Physics {
     /// Messages heard at a time, so that a flood of them cannot keep physics from its work.
     pub(super) command_capacity: usize,
     pub(super) count_areas: bool,
+    pub(super) stage_watch: Option<StageWatch>,
     pub(super) reach: Reach,
     /// Whether all was done at some moment since the last commands came.
     pub(super) caught_up: bool,
@@ -187,6 +206,9 @@ impl Physics {
         let shown = Frame(self.shared.display.load(Ordering::Acquire));
         self.hear(shown);
         self.learn_display(shown);
+        if let Some(asked) = self.shared.take_preview() {
+            asked.desk.ask_preview(asked.ticket, asked.preview.clone(), self.timeline.fork());
+        }
     }
 
     /// Learns what is shown, and how far ahead of it to go.
@@ -205,7 +227,13 @@ impl Physics {
     /// The next frame of work, as far as the reach goes.
     fn advance(&mut self) -> Progress {
         let reached = self.timeline.display().plus(u64::from(self.reach.frames()));
-        if self.timeline.valid_to() >= reached { Progress::Idle } else { self.timeline.advance() }
+        if self.timeline.valid_to() >= reached {
+            return Progress::Idle;
+        }
+        match &mut self.stage_watch {
+            Some(watch) => watch.advance(&mut self.timeline, &self.shared.stage_times),
+            None => self.timeline.advance(),
+        }
     }
 
     /// Takes the messages that wait, while this frame is shown.
@@ -273,7 +301,7 @@ impl Physics {
     }
 }
 
-fn message_of(panic: &(dyn Any + Send)) -> String {
+pub(super) fn message_of(panic: &(dyn Any + Send)) -> String {
     match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
         (Some(text), _) => (*text).to_owned(),
         (_, Some(text)) => text.clone(),

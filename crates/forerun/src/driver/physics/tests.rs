@@ -31,6 +31,7 @@ fn bench(mut timeline: Timeline) -> Bench {
         heard: Heard::new(Arc::clone(&names)),
         command_capacity: 16,
         count_areas: false,
+        stage_watch: None,
         reach: Reach::new(timeline.settings().lookahead),
         caught_up: false,
         pictures: 0,
