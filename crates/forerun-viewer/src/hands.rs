@@ -5,6 +5,7 @@ mod camera_hand;
 use three_d::Event;
 
 use crate::camera::Camera;
+use crate::draw::Extras;
 use crate::input::Input;
 use crate::session::Play;
 use crate::view::View;
@@ -26,6 +27,8 @@ pub enum Tool {
 pub struct Hands {
     /// What a press of the left button does.
     pub tool: Tool,
+    /// What is shown of what the hands do.
+    pub extras: Extras,
 }
 
 impl Hands {

@@ -9,7 +9,7 @@ use three_d::{
 use crate::actions::{Action, action_of};
 use crate::camera::Camera;
 use crate::capture::{self, Capture, FilmSize, Shot, Want};
-use crate::draw::Painter;
+use crate::draw::{Painter, Scenery};
 use crate::hands::{Hands, Tool};
 use crate::host::{Host, SceneSource};
 use crate::input::Input;
@@ -217,7 +217,14 @@ impl Viewer {
     fn draw(&mut self, frame: &FrameInput) {
         let target = frame.screen();
         if let Some(play) = self.session.play() {
-            self.painter.draw(&target, frame.viewport, play, self.session.opened, &self.camera, &self.view);
+            let scenery = Scenery {
+                play,
+                scene_number: self.session.opened,
+                camera: &self.camera,
+                view: &self.view,
+                extras: &self.hands.extras,
+            };
+            self.painter.draw(&target, frame.viewport, &scenery);
         } else {
             target.clear(three_d::ClearState::color_and_depth(0.2, 0.22, 0.25, 1.0, 1.0));
         }
