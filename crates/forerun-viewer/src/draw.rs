@@ -1,7 +1,10 @@
 //! Drawing: bodies, ground and sky, by the graphics card.
 
 mod convert;
+mod extras;
 mod surface;
+
+pub use extras::{Extras, PreviewTrack};
 
 use std::collections::BTreeMap;
 
@@ -16,6 +19,21 @@ use crate::session::Play;
 use crate::view::View;
 use convert::{matrix_of, vector};
 use surface::Look;
+
+/// What there is to draw.
+#[derive(Clone, Copy, Debug)]
+pub struct Scenery<'a> {
+    /// The scene that plays.
+    pub play: &'a Play,
+    /// Who keeps something of a scene keeps this number with it.
+    pub scene_number: u64,
+    /// Where it is seen from.
+    pub camera: &'a Camera,
+    /// How it is shown.
+    pub view: &'a View,
+    /// What the hands show.
+    pub extras: &'a Extras,
+}
 
 /// Bodies of one shape.
 struct Batch {
@@ -45,15 +63,8 @@ impl Painter {
     }
 
     /// Draws the picture that the session shows.
-    pub fn draw(
-        &mut self,
-        target: &RenderTarget<'_>,
-        viewport: Viewport,
-        play: &Play,
-        scene_number: u64,
-        camera: &Camera,
-        view: &View,
-    ) {
+    pub fn draw(&mut self, target: &RenderTarget<'_>, viewport: Viewport, scenery: &Scenery<'_>) {
+        let Scenery { play, scene_number, camera, view, .. } = *scenery;
         if self.opened != scene_number {
             self.batches.clear();
             self.opened = scene_number;

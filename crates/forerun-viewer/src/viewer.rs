@@ -1,16 +1,15 @@
 //! Viewer: one picture after another, as a short story: take what happened, show, do what was asked, draw.
 
-use forerun::Change;
 use three_d::{Context, Event, FrameInput, FrameOutput, GUI};
 
 use crate::actions::{Action, action_of};
 use crate::camera::Camera;
-use crate::draw::Painter;
+use crate::draw::{Painter, Scenery};
 use crate::hands::{Hands, Tool};
 use crate::host::{Host, SceneSource};
 use crate::input::Input;
 use crate::panels::{self, Wish};
-use crate::report::Report;
+use crate::report::{Report, Reported, Window};
 use crate::session::{Play, Session};
 use crate::view::View;
 
@@ -31,6 +30,7 @@ pub struct Viewer {
     /// The scene that the camera has looked at as a whole.
     framed: u64,
     pictures: u64,
+    window: Window,
 }
 
 impl Viewer {
@@ -46,6 +46,7 @@ impl Viewer {
             gui: GUI::new(context),
             framed: 0,
             pictures: 0,
+            window: Window::default(),
         }
     }
 
@@ -62,8 +63,10 @@ impl Viewer {
             }
         }
         self.take_keys(&mut input);
+        let opened = self.session.opened;
+        self.window = Window { viewport: input.viewport, pixels_per_point: input.pixels_per_point };
         if let Some(play) = self.session.play_mut() {
-            self.hands.take(&mut input, play, &mut self.camera, &self.view);
+            self.hands.take(&mut input, (play, opened), &mut self.camera, &self.view);
         }
         self.draw(&frame);
         self.pictures += 1;
@@ -73,7 +76,14 @@ impl Viewer {
     /// The state as plain values, for scripts.
     #[must_use]
     pub fn report(&self) -> Report {
-        Report::of(&self.session, &self.view, self.pictures)
+        Report::of(&Reported {
+            session: &self.session,
+            view: &self.view,
+            hands: &self.hands,
+            camera: &self.camera,
+            window: self.window,
+            pictures: self.pictures,
+        })
     }
 
     /// Does what a key, a menu or a button asks for.
@@ -91,9 +101,14 @@ impl Viewer {
             Action::PushTool => self.hands.tool = Tool::Push,
             Action::Focus => self.focus(false),
             Action::FrameAll => self.focus(true),
+            Action::Coupled => self.session.switch_driver(),
             action => {
                 if let Some(play) = self.session.play_mut() {
-                    perform_in(play, action);
+                    match action {
+                        Action::Add => self.hands.add(play, &self.camera, &self.view.grip),
+                        Action::Deselect if self.hands.cancel(play) => {}
+                        action => perform_in(play, action),
+                    }
                 }
             }
         }
@@ -106,6 +121,14 @@ impl Viewer {
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
             wishes = panels::show(ui, session, view);
         });
+        // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.
+        if gui.context().is_pointer_over_egui() {
+            for event in &mut input.events {
+                if let Event::MousePress { handled, .. } | Event::MouseWheel { handled, .. } = event {
+                    *handled = true;
+                }
+            }
+        }
         wishes
     }
 
@@ -140,7 +163,14 @@ impl Viewer {
     fn draw(&mut self, frame: &FrameInput) {
         let target = frame.screen();
         if let Some(play) = self.session.play() {
-            self.painter.draw(&target, frame.viewport, play, self.session.opened, &self.camera, &self.view);
+            let scenery = Scenery {
+                play,
+                scene_number: self.session.opened,
+                camera: &self.camera,
+                view: &self.view,
+                extras: &self.hands.extras,
+            };
+            self.painter.draw(&target, frame.viewport, &scenery);
         } else {
             target.clear(three_d::ClearState::color_and_depth(0.2, 0.22, 0.25, 1.0, 1.0));
         }
@@ -167,16 +197,9 @@ fn perform_in(play: &mut Play, action: Action) {
         Action::Undo => play.undo(),
         Action::Redo => play.redo(),
         Action::Deselect => play.selection.clear(),
-        Action::SelectAll => {
-            let moving = |id: &forerun::BodyId| play.body(*id).is_some_and(|body| body.is_dynamic());
-            let bodies: Vec<_> = play.samples.iter().map(|(id, _)| *id).filter(moving).collect();
-            play.selection.pick_all(bodies);
-        }
-        Action::Delete => {
-            for body in play.selection.bodies().to_vec() {
-                play.change(Change::Remove { body });
-            }
-        }
+        Action::SelectAll => play.select_all(),
+        Action::Delete => play.remove_selected(),
+        Action::Duplicate => play.duplicate_selected(),
         _ => {}
     }
 }
