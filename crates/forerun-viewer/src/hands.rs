@@ -13,34 +13,10 @@ use crate::camera::Camera;
 use crate::draw::Extras;
 use crate::input::Input;
 use crate::session::Play;
-use crate::view::{Grip, View};
+use crate::view::{Grip, Tool, View};
 use drag::Drag;
 use missile::Missiles;
 use sight::Sight;
-
-/// What a press of the left button does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tool {
-    /// Picks a body, and drags it by a spring.
-    #[default]
-    Select,
-    /// Throws something.
-    Throw,
-    /// Pushes a body.
-    Push,
-}
-
-impl Tool {
-    /// As menus and scripts say it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Tool::Select => "select",
-            Tool::Throw => "throw",
-            Tool::Push => "push",
-        }
-    }
-}
 
 /// What the left button is held down for.
 #[derive(Debug, Default)]
@@ -55,8 +31,6 @@ enum Doing {
 /// The user's hands.
 #[derive(Debug, Default)]
 pub struct Hands {
-    /// What a press of the left button does.
-    pub tool: Tool,
     /// What is shown of what the hands do.
     pub extras: Extras,
     doing: Doing,
@@ -120,7 +94,7 @@ impl Hands {
 
     fn press(&mut self, play: &mut Play, sight: &Sight<'_>, view: &View) {
         let Some(pointer) = self.pointer else { return };
-        match self.tool {
+        match view.grip.tool {
             Tool::Select => self.pick(play, sight, pointer),
             Tool::Throw => self.doing = Doing::Aiming,
             Tool::Push => push(play, sight, pointer, &view.grip),
@@ -160,7 +134,7 @@ impl Hands {
                 }
             }
             Doing::Aiming => throw::aim(&mut self.extras, play, (&mut self.missiles, view), (sight, pointer)),
-            Doing::Nothing if self.tool == Tool::Throw => {}
+            Doing::Nothing if view.grip.tool == Tool::Throw => {}
             Doing::Nothing => self.extras.pointed = sight.hit(play, pointer).map(|hit| hit.body),
         }
     }

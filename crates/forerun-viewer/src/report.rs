@@ -184,7 +184,7 @@ impl Report {
     /// The state now.
     #[must_use]
     pub fn of(reported: &Reported<'_>) -> Report {
-        let Reported { session, view, hands, window, pictures, .. } = *reported;
+        let Reported { session, view, window, pictures, .. } = *reported;
         let (stage, failure) = match &session.stage {
             Stage::Loading(_) => ("loading", None),
             Stage::Playing(_) => ("playing", None),
@@ -200,7 +200,7 @@ impl Report {
             window: [window.viewport.width, window.viewport.height],
             pixels_per_point: window.pixels_per_point,
             strip: session.strip.map(|strip| StripReport::of(&strip, scale)),
-            tool: hands.tool.name(),
+            tool: view.grip.tool.name(),
             slow_down_s: session.slow_down_s,
             view: *view,
             play: session.play().map(|play| PlayReport::of(play, reported)),
