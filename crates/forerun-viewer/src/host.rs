@@ -10,7 +10,7 @@ mod native;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
-    Choosing, FilmWriter, Host, Saving, Starting, Watch, choose_scene, let_go, load_settings, save_file,
+    Choosing, FilmWriter, Host, Saving, Starting, Watch, choose_scene, load_settings, save_file,
     save_picture, save_settings, watch,
 };
 

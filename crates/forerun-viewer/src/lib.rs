@@ -9,6 +9,7 @@
 pub mod actions;
 pub mod camera;
 pub mod capture;
+pub mod desk;
 pub mod draw;
 pub mod hands;
 pub mod host;

@@ -86,7 +86,7 @@ impl<'a> Paint<'a> {
         let islands = match (by, inside) {
             (ColourBy::Island, None) => {
                 let moves = |id: BodyId| snapshot.body_at(id, frame).is_some_and(|body| body.is_dynamic());
-                islands_of(&snapshot.touches(frame), moves)
+                islands_of(&snapshot.contacts(frame), moves)
             }
             _ => BTreeMap::new(),
         };

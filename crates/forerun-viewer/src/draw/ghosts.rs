@@ -185,7 +185,10 @@ fn trail_of(play: &Play, id: BodyId, seconds: f32) -> Vec<Vec3> {
     let to = Frame(from.0.saturating_add(frames)).min(snapshot.known_to(id));
     let middle = |frame: u64| Some(snapshot.state(id, Frame(frame))?.position);
     // The first point is where it is drawn, so that the trail does not jump from frame to frame.
-    let now = play.sample(id).zip(play.body(id)).map(|(sample, body)| sample.pose.transform_point(body.frame.position));
+    let now = play
+        .sample(id)
+        .zip(play.body(id))
+        .map(|(sample, body)| sample.pose.transform_point(body.frame.position));
     now.into_iter().chain((from.0 + 1..=to.0).map_while(middle)).collect()
 }
 

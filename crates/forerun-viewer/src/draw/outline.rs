@@ -2,8 +2,8 @@
 
 use forerun::Vec3;
 use three_d::{
-    ClearState, Context, CoreError, DepthTest, Interpolation, RenderStates, Texture2D, VertexBuffer, Viewport,
-    Wrapping, WriteMask,
+    ClearState, Context, CoreError, DepthTest, Interpolation, RenderStates, Texture2D, VertexBuffer,
+    Viewport, Wrapping, WriteMask,
 };
 
 use super::convert::vector;

@@ -84,8 +84,10 @@ fn surface_of(context: &Context, shape: &Shape) -> Surface {
     };
     // Shapes of size 1 are possible.
     let facets = facets(&unit.unwrap_or(Shape::HalfSpace));
-    let positions: Vec<[f32; 3]> = facets.iter().flat_map(|facet| facet.corners.map(Vec3::to_array)).collect();
-    let normals: Vec<[f32; 3]> = facets.iter().flat_map(|facet| facet.normals.map(Vec3::to_array)).collect();
+    let positions: Vec<[f32; 3]> =
+        facets.iter().flat_map(|facet| facet.corners.map(|at: Vec3| at.to_array())).collect();
+    let normals: Vec<[f32; 3]> =
+        facets.iter().flat_map(|facet| facet.normals.map(|at: Vec3| at.to_array())).collect();
     Surface {
         vertices: positions.len() as u32,
         positions: VertexBuffer::new_with_data(context, &positions),

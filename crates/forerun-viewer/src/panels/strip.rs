@@ -11,6 +11,7 @@ use self::marks::Mark;
 use self::scale::{Kept, Scale, Zoom};
 use super::icons;
 use super::palette::Palette;
+use crate::report::StripPlace;
 use crate::session::Play;
 
 /// Height of the strip. Points.
@@ -38,7 +39,7 @@ struct Lanes {
 }
 
 impl Strip {
-    pub(super) fn show(&mut self, ui: &mut Ui, play: &mut Play, scene: u64, palette: &Palette) {
+    pub(super) fn show(&mut self, ui: &mut Ui, play: &mut Play, scene: u64, palette: &Palette) -> StripPlace {
         if self.scene != scene {
             *self = Strip { scene, ..Strip::default() };
         }
@@ -68,6 +69,8 @@ impl Strip {
         let shown_s = play.picture.time_s;
         paint_playhead(&painter, rect, scale.x_of(shown_s), palette);
         explain(ui, response, &marks, &scale, play);
+        let [left, top] = [x.min, rect.top()];
+        StripPlace { rect: [left, top, x.span(), rect.height()], from_s: scale.start_s, to_s: scale.end_s }
     }
 
     /// The wheel zooms, the right or middle button moves what is shown, two clicks show all.
