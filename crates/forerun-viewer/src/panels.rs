@@ -64,13 +64,18 @@ pub struct Panels {
     scenes: scenes::Scenes,
     plots: plots::Plots,
     messages: messages::Messages,
+    dressed: bool,
 }
 
 impl Panels {
     /// Draws all panels; what the user asked for in them.
     pub fn show(&mut self, ui: &mut egui::Ui, board: &mut Board<'_>) -> Vec<Wish> {
         let mut wishes = Vec::new();
-        palette::dress(ui.ctx(), board.view.theme);
+        if !self.dressed {
+            palette::dress(ui.ctx());
+            self.dressed = true;
+        }
+        palette::choose(ui.ctx(), board.view.theme);
         let palette = Palette::of(board.view.theme);
         egui::Panel::top("menus").show_inside(ui, |ui| top::show(ui, board, &palette, &mut wishes));
         egui::Panel::bottom("time").show_inside(ui, |ui| self.time(ui, board, &palette, &mut wishes));

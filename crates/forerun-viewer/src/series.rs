@@ -137,7 +137,7 @@ impl Series {
             computed: (ahead + edits).saturating_sub(self.done.computed),
             recomputed: edits.saturating_sub(self.done.recomputed),
             interval_ms: interval_s * 1e3,
-            wait_ms: 0.0,
+            wait_ms: play.coupled().map_or(0.0, |coupled| coupled.step_s() * 1e3),
             clock_rate: picture.rate,
         };
         self.done.computed = ahead + edits;
@@ -148,7 +148,15 @@ impl Series {
 
     fn take_steps(&mut self, play: &Play, real_s: f64) {
         self.heard.clear();
-        self.done.steps = play.driver.stage_times(self.done.steps, &mut self.heard);
+        if let Some(coupled) = play.coupled() {
+            let times = coupled.stage_times();
+            if times.number != self.done.steps {
+                self.done.steps = times.number;
+                self.heard.push(times);
+            }
+        } else {
+            self.done.steps = play.driver.stage_times(self.done.steps, &mut self.heard);
+        }
         if !self.held {
             self.heard
                 .iter()

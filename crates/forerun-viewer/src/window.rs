@@ -109,7 +109,7 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
                 title = viewer.title();
                 window.set_title(&title);
             }
-            pace.drawn(viewer.is_still());
+            pace.drawn(viewer.is_still() || window.is_minimized() == Some(true));
             let ended = output.exit || done || context.swap_buffers().is_err();
             *control = if ended { ControlFlow::Exit } else { pace.wait() };
         }

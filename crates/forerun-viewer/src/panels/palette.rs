@@ -56,8 +56,30 @@ impl Palette {
     }
 }
 
-/// Panels in the colours of a theme.
-pub(super) fn dress(ctx: &egui::Context, theme: Theme) {
+/// Panels in the colours of both themes; once.
+pub(super) fn dress(ctx: &egui::Context) {
+    ctx.style_mut_of(egui::Theme::Dark, |style| {
+        arrange(style);
+        // Grey on grey is hard to read over a bright picture.
+        style.visuals.override_text_color = Some(Color32::from_rgb(0xdc, 0xdf, 0xe4));
+        style.visuals.selection.bg_fill = Color32::from_rgb(0x2d, 0x5c, 0x9e);
+    });
+    ctx.style_mut_of(egui::Theme::Light, |style| {
+        arrange(style);
+        style.visuals.override_text_color = Some(Color32::from_rgb(0x20, 0x25, 0x2c));
+        style.visuals.selection.bg_fill = Color32::from_rgb(0xa9, 0xcc, 0xf7);
+    });
+}
+
+fn arrange(style: &mut egui::Style) {
+    style.spacing.item_spacing = egui::vec2(6.0, 5.0);
+    style.spacing.button_padding = egui::vec2(7.0, 3.0);
+    style.interaction.tooltip_delay = 0.35;
+    style.visuals.window_shadow.blur = 12;
+}
+
+/// Light or dark from now on.
+pub(super) fn choose(ctx: &egui::Context, theme: Theme) {
     let wanted = match theme {
         Theme::Dark => egui::Theme::Dark,
         Theme::Light => egui::Theme::Light,
@@ -65,20 +87,4 @@ pub(super) fn dress(ctx: &egui::Context, theme: Theme) {
     if ctx.theme() != wanted {
         ctx.set_theme(wanted);
     }
-    ctx.global_style_mut(|style| {
-        style.spacing.item_spacing = egui::vec2(6.0, 5.0);
-        style.spacing.button_padding = egui::vec2(7.0, 3.0);
-        style.interaction.tooltip_delay = 0.35;
-        let visuals = &mut style.visuals;
-        visuals.window_shadow.blur = 12;
-        visuals.selection.bg_fill = match theme {
-            Theme::Dark => Color32::from_rgb(0x2d, 0x5c, 0x9e),
-            Theme::Light => Color32::from_rgb(0xa9, 0xcc, 0xf7),
-        };
-        match theme {
-            // Grey on grey is hard to read over a bright picture.
-            Theme::Dark => visuals.override_text_color = Some(Color32::from_rgb(0xdc, 0xdf, 0xe4)),
-            Theme::Light => visuals.override_text_color = Some(Color32::from_rgb(0x20, 0x25, 0x2c)),
-        }
-    });
 }

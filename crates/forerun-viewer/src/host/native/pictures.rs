@@ -75,10 +75,11 @@ impl FilmWriter {
 
     /// One more picture. Never waits: there is [room](FilmWriter::has_room), or it is left out.
     pub fn push(&mut self, shot: Shot) {
-        if let Some(pictures) = &self.pictures
-            && pictures.try_send(shot).is_ok()
-        {
-            self.waiting.fetch_add(1, Ordering::Relaxed);
+        let Some(pictures) = &self.pictures else { return };
+        // Before it is sent: who takes it counts it down.
+        self.waiting.fetch_add(1, Ordering::Relaxed);
+        if pictures.try_send(shot).is_err() {
+            self.waiting.fetch_sub(1, Ordering::Relaxed);
         }
     }
 
@@ -240,6 +241,53 @@ mod tests {
         let sum: u32 = (0..300).map(|number| u32::from(delay_cs(number, 30))).sum();
         assert_eq!(sum, 1000);
         assert!((0..300).all(|number| (3..=4).contains(&delay_cs(number, 30))));
+    }
+
+    fn film(format: FilmFormat, name: &str) -> String {
+        let settings = FilmSettings { format, fps: 25, ..FilmSettings::default() };
+        let stem = format!("forerun-film-{name}-{}", std::process::id());
+        let mut writer = FilmWriter::start(&settings, &stem, [16, 8]).expect("it can be begun");
+        for grey in [0, 100, 200] {
+            while !writer.has_room() {
+                std::thread::yield_now();
+            }
+            writer.push(Shot { size: [32, 16], pixels: vec![[grey, grey, grey, 255]; 512] });
+        }
+        writer.end();
+        loop {
+            if let Some(written) = writer.poll() {
+                let written = written.expect("it can be written");
+                return written.strip_suffix(" (3 pictures)").expect("three were given").to_owned();
+            }
+            std::thread::yield_now();
+        }
+    }
+
+    #[test]
+    fn a_film_of_three_pictures_is_three_numbered_files() {
+        let folder = film(FilmFormat::Png, "png");
+        for (number, grey) in [0, 100, 200].into_iter().enumerate() {
+            let file = std::fs::File::open(format!("{folder}/{number:05}.png")).expect("it is there");
+            let mut reader = png::Decoder::new(file).read_info().expect("it is a PNG");
+            let mut bytes = vec![0; reader.output_buffer_size()];
+            reader.next_frame(&mut bytes).expect("it holds a picture");
+            assert_eq!(bytes[..4], [grey, grey, grey, 255]);
+            assert_eq!(bytes.len(), 16 * 8 * 4);
+        }
+        std::fs::remove_dir_all(folder).expect("it was written just now");
+    }
+
+    #[test]
+    fn a_gif_has_all_pictures_at_their_times() {
+        let path = film(FilmFormat::Gif, "gif");
+        let file = std::fs::File::open(&path).expect("it is there");
+        let mut decoder = gif::DecodeOptions::new().read_info(file).expect("it is a GIF");
+        let mut delays = Vec::new();
+        while let Some(frame) = decoder.read_next_frame().expect("it is whole") {
+            delays.push(frame.delay);
+        }
+        assert_eq!(delays, [4, 4, 4]);
+        std::fs::remove_file(path).expect("it was written just now");
     }
 
     #[test]
