@@ -1,5 +1,8 @@
 //! Camera: an eye that goes round a point, flies, and travels to what it is to look at.
-#![allow(clippy::disallowed_methods, reason = "where a picture is taken from need not be the same on all platforms")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "where a picture is taken from need not be the same on all platforms"
+)]
 
 mod framing;
 mod motion;
@@ -155,6 +158,13 @@ impl Camera {
         self.motion.travel(framed);
     }
 
+    /// Ends a journey at once.
+    pub fn arrive(&mut self) {
+        if let Some(framed) = self.motion.journey(f32::INFINITY, &self.framed()) {
+            self.place(framed);
+        }
+    }
+
     fn place(&mut self, Framed { target, distance, yaw, pitch }: Framed) {
         (self.target, self.distance, self.yaw, self.pitch) = (target, distance, yaw, pitch);
     }
@@ -211,7 +221,8 @@ mod tests {
         let ray = camera.ray(0.4, -0.6, 1.6);
         let depth = camera.distance / ray.direction.dot(camera.forward());
         let point = ray.origin + ray.direction * depth;
-        let near = |place: Option<[f32; 2]>| place.is_some_and(|[x, y]| (x - 0.4).abs() + (y + 0.6).abs() < 1e-3);
+        let near =
+            |place: Option<[f32; 2]>| place.is_some_and(|[x, y]| (x - 0.4).abs() + (y + 0.6).abs() < 1e-3);
         assert!(near(camera.project(point, 1.6)));
         camera.zoom_to(0.5, &ray);
         assert!((camera.distance - 5.0).abs() < 1e-4 && near(camera.project(point, 1.6)));

@@ -119,4 +119,3 @@ fn reach_of(body: &Body) -> f32 {
     let reach = body.radius + body.frame.position.length();
     if reach.is_finite() { reach } else { 0.0 }
 }
-

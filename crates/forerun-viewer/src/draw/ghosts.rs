@@ -3,7 +3,7 @@
 use forerun::{BodyId, BodyKind, Frame, Pose, Sample, Vec3};
 use three_d::{Context, Cull, RenderStates, WriteMask};
 
-use super::colours::{Paint, mix};
+use super::colours::Paint;
 use super::crowd::{Crowd, Drawn, Mark};
 use super::eye::Eye;
 use super::lines::{Ink, Lines};
@@ -98,7 +98,7 @@ impl Ghosts {
                 continue;
             }
             if let Some(seat) = layer.crowd.seat(context, surfaces, &body.shape) {
-                let [red, green, blue] = mix(paint.colour(*id, body, sample), [255; 3], 0.12);
+                let [red, green, blue] = paint.colour(*id, body, sample);
                 let ink = [red, green, blue, 255];
                 let drawn = Drawn { shape: &body.shape, pose: &sample.pose, ink, mark: Mark::None };
                 layer.crowd.add(seat, &drawn);
@@ -185,7 +185,10 @@ fn trail_of(play: &Play, id: BodyId, seconds: f32) -> Vec<Vec3> {
     let to = Frame(from.0.saturating_add(frames)).min(snapshot.known_to(id));
     let middle = |frame: u64| Some(snapshot.state(id, Frame(frame))?.position);
     // The first point is where it is drawn, so that the trail does not jump from frame to frame.
-    let now = play.sample(id).zip(play.body(id)).map(|(sample, body)| sample.pose.transform_point(body.frame.position));
+    let now = play
+        .sample(id)
+        .zip(play.body(id))
+        .map(|(sample, body)| sample.pose.transform_point(body.frame.position));
     now.into_iter().chain((from.0 + 1..=to.0).map_while(middle)).collect()
 }
 

@@ -171,8 +171,12 @@ mod tests {
         let mut lines = Lines::default();
         let bounds = Aabb { min: Vec3::ZERO, max: Vec3::new(1.0, 2.0, 3.0) };
         lines.boxed(&bounds, 1.0, [255; 4]);
-        let lengths: f32 =
-            lines.starts.iter().zip(&lines.ends).map(|(a, b)| (0..3).map(|k| (b[k] - a[k]).abs()).sum::<f32>()).sum();
+        let lengths: f32 = lines
+            .starts
+            .iter()
+            .zip(&lines.ends)
+            .map(|(a, b)| (0..3).map(|k| (b[k] - a[k]).abs()).sum::<f32>())
+            .sum();
         assert!(lines.inks.len() == 12 && (lengths - 24.0).abs() < 1e-6, "{lengths}");
         lines.clear();
         let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::splat(f32::NAN)];

@@ -6,8 +6,9 @@ pub(super) use field::FieldSlice;
 
 use forerun::{Aabb, Frame, FrameInspection, InspectedContact, Touch, Vec3};
 
+use super::Scenery;
+use super::labels::Label;
 use super::lines::{Ink, Lines};
-use super::{Label, Scenery};
 
 /// So many labels can be read at once.
 const LABELS_MAX: usize = 300;
@@ -34,7 +35,7 @@ pub(super) fn draw(lines: &mut Lines, scenery: &Scenery<'_>) {
     if overlays.contacts || overlays.impulses {
         match scenery.inside {
             Some(inside) => draw_contacts(lines, scenery, &inside.step.contacts),
-            None => draw_touches(lines, scenery, &snapshot.touches(scenery.play.picture.frame)),
+            None => draw_touches(lines, scenery, &snapshot.contacts(scenery.play.picture.frame)),
         }
     }
     if overlays.bounds {
@@ -173,7 +174,8 @@ pub(super) fn labels(scenery: &Scenery<'_>) -> Vec<Label> {
 /// Levels from the ground up, in turn.
 fn level_colour(level: Option<u32>) -> [u8; 3] {
     level.map_or([200; 3], |level| {
-        [[255, 255, 255], [255, 224, 120], [150, 230, 160], [140, 205, 255], [230, 170, 240]][level as usize % 5]
+        [[255, 255, 255], [255, 224, 120], [150, 230, 160], [140, 205, 255], [230, 170, 240]]
+            [level as usize % 5]
     })
 }
 

@@ -9,7 +9,6 @@ use three_d::{
     Wrapping, WriteMask,
 };
 
-use super::convert::vector;
 use super::crowd::Crowd;
 use super::eye::identity;
 use super::light::TO_SUN;
@@ -62,9 +61,8 @@ impl SunBox {
         let [right, up, _] = axes();
         let middle = [target.dot(right), target.dot(up)];
         let part = |reach: f32| {
-            let cut = |axis: usize, side: f32| {
-                (middle[axis] + side * reach).clamp(self.min[axis], self.max[axis])
-            };
+            let cut =
+                |axis: usize, side: f32| (middle[axis] + side * reach).clamp(self.min[axis], self.max[axis]);
             self.square([cut(0, -1.0), cut(1, -1.0)], [cut(0, 1.0), cut(1, 1.0)])
         };
         let (near, far) = (part(NEAR_REACH * distance), part(FAR_REACH * distance));
@@ -183,6 +181,7 @@ impl Shadows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::convert::vector;
 
     fn mapped(covered: &SunBox, point: Vec3) -> Vec3 {
         let at = covered.matrix() * vector(point).extend(1.0);

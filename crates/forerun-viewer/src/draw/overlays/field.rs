@@ -51,7 +51,8 @@ impl FieldSlice {
         let Shape::Mesh(mesh) = &body.shape else { return None };
         let field = mesh.collider().field.as_ref()?;
         let height = overlays.field_height.clamp(0.0, 1.0);
-        let same = |drawn: &Drawn| Arc::ptr_eq(&drawn.mesh, mesh) && drawn.height.to_bits() == height.to_bits();
+        let same =
+            |drawn: &Drawn| Arc::ptr_eq(&drawn.mesh, mesh) && drawn.height.to_bits() == height.to_bits();
         if !self.drawn.as_ref().is_some_and(same) {
             let image = image_of(context, field, mesh, height);
             self.drawn = Some(Drawn { mesh: Arc::clone(mesh), height, image });
@@ -115,8 +116,7 @@ fn pixels_of(field: &Field, mesh: &Mesh, height: f32) -> Vec<[u8; 4]> {
     let level = level_of(mesh, height);
     let side = |k: u32| ((k as f32 + 0.5) / PIXELS as f32 * 2.0 - 1.0) * half;
     let point = |k: u32| Vec3::new(centre.x + side(k % PIXELS), level, centre.z + side(k / PIXELS));
-    let distances: Vec<f32> =
-        (0..PIXELS * PIXELS).map(|k| field.distance_and_gradient(point(k)).0).collect();
+    let distances: Vec<f32> = (0..PIXELS * PIXELS).map(|k| field.distance_and_gradient(point(k)).0).collect();
     let deepest = distances.iter().fold(0.0_f32, |deepest, distance| deepest.max(-distance));
     let scale = deepest.max(0.05 * half);
     distances.iter().map(|distance| colour_of(*distance, scale, 2.0 * half / PIXELS as f32)).collect()
