@@ -158,6 +158,13 @@ impl Camera {
         self.motion.travel(framed);
     }
 
+    /// Ends a journey at once.
+    pub fn arrive(&mut self) {
+        if let Some(framed) = self.motion.journey(f32::INFINITY, &self.framed()) {
+            self.place(framed);
+        }
+    }
+
     fn place(&mut self, Framed { target, distance, yaw, pitch }: Framed) {
         (self.target, self.distance, self.yaw, self.pitch) = (target, distance, yaw, pitch);
     }

@@ -12,6 +12,7 @@ mod extras;
 mod eye;
 mod ghosts;
 mod ground;
+mod labels;
 mod light;
 mod lines;
 mod outline;
@@ -22,6 +23,7 @@ mod surface;
 
 pub use colours::{Rgb, legend};
 pub use extras::{Extras, PreviewTrack};
+pub use labels::write_labels;
 
 use forerun::{FrameInspection, Vec3};
 use three_d::{ClearState, Context, CoreError, RenderTarget, Viewport};
@@ -61,17 +63,6 @@ pub struct Scenery<'a> {
     pub inside: Option<&'a FrameInspection>,
 }
 
-/// Words at a point of the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Label {
-    /// Where. Metres.
-    pub at: Vec3,
-    /// What is written there.
-    pub text: String,
-    /// In which colour.
-    pub rgb: Rgb,
-}
-
 /// Whether the view shows anything that is only known from inside a frame.
 #[must_use]
 pub fn needs_inspection(view: &View) -> bool {
@@ -83,12 +74,6 @@ pub fn needs_inspection(view: &View) -> bool {
         || overlays.bounds
         || overlays.areas
         || matches!(view.colour_by, Area | Island | Slices)
-}
-
-/// What overlays say in words, the nearest to the eye first.
-#[must_use]
-pub fn labels(scenery: &Scenery<'_>) -> Vec<Label> {
-    overlays::labels(scenery)
 }
 
 /// What draws the scene. Keeps what it sent to the graphics card between pictures.

@@ -14,6 +14,7 @@ use crate::draw::Extras;
 use crate::input::Input;
 use crate::session::Play;
 use crate::view::{Grip, Tool, View};
+pub(crate) use camera_hand::take_flight;
 use drag::Drag;
 use missile::Missiles;
 use sight::Sight;

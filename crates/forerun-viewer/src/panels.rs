@@ -3,7 +3,7 @@
 mod files;
 mod help;
 mod icons;
-mod labels;
+mod legend;
 mod messages;
 mod palette;
 mod plots;
@@ -15,9 +15,7 @@ mod transport;
 use three_d::egui;
 
 use crate::actions::Action;
-use crate::camera::Camera;
 use crate::capture::{Capture, Want};
-use crate::draw::Label;
 use crate::host::SceneSource;
 use crate::series::Series;
 use crate::session::Session;
@@ -44,16 +42,12 @@ pub struct Board<'a> {
     pub session: &'a mut Session,
     /// What is shown and how.
     pub view: &'a mut View,
-    /// Where it is seen from.
-    pub camera: &'a Camera,
     /// What is remembered.
     pub settings: &'a mut Settings,
     /// What plots show.
     pub series: &'a mut Series,
     /// Screenshots and films.
     pub capture: &'a Capture,
-    /// What overlays say in words.
-    pub labels: &'a [Label],
 }
 
 /// What panels remember between pictures.
@@ -86,8 +80,7 @@ impl Panels {
                 .size_range(140.0..=700.0)
                 .show_inside(ui, |ui| self.plots.show(ui, board, &palette, &mut wishes));
         }
-        labels::show(ui, board);
-        labels::legend(ui, board);
+        legend::show(ui, board);
         self.scenes.show(ui.ctx(), &mut wishes);
         self.files.show(ui.ctx(), &board.settings.recent, &mut wishes);
         help::show(ui.ctx(), board.view);

@@ -8,15 +8,15 @@ use crate::actions::Action;
 use crate::camera::Camera;
 use crate::capture::{Capture, Want};
 use crate::desk::{Desk, keys_of};
-use crate::draw::{self, Painter, Scenery};
-use crate::hands::Hands;
+use crate::draw::{Painter, Scenery, needs_inspection, write_labels};
+use crate::hands::{Hands, take_flight};
 use crate::host::{Host, SceneSource};
 use crate::input::Input;
 use crate::keeper::Keeper;
 use crate::panels::{Board, Panels, Wish};
 use crate::report::{Report, Reported, Window};
 use crate::series::Series;
-use crate::session::{Play, Session, Stage};
+use crate::session::{Session, Stage};
 use crate::settings::Settings;
 use crate::view::View;
 
@@ -83,6 +83,8 @@ impl Viewer {
         self.show(&input);
         let wishes = self.show_panels(&mut input);
         wishes.into_iter().for_each(|wish| self.grant(wish));
+        // Keys that fly mean nothing else while they do.
+        take_flight(&mut input, &mut self.camera);
         for action in keys_of(&mut input) {
             self.perform(action);
         }
@@ -157,7 +159,7 @@ impl Viewer {
         self.session.show(self.clock_s);
         let opened = self.session.opened;
         if let Some(play) = self.session.play_mut() {
-            if draw::needs_inspection(&self.view) {
+            if needs_inspection(&self.view) {
                 play.ask_inspection();
             }
             self.series.take(play, opened, input.real_s);
@@ -177,13 +179,15 @@ impl Viewer {
     }
 
     fn show_panels(&mut self, input: &mut Input) -> Vec<Wish> {
-        let labels = self.session.play().map(|play| draw::labels(&self.scenery(play))).unwrap_or_default();
-        let Viewer { gui, session, view, camera, keeper, series, capture, panels, .. } = self;
+        let Viewer { gui, session, view, camera, hands, keeper, series, capture, panels, .. } = self;
         let mut wishes = Vec::new();
         let scale = input.pixels_per_point * view.scale;
-        let mut board =
-            Board { session, view, camera, settings: &mut keeper.settings, series, capture, labels: &labels };
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
+            if let Some(scenery) = scenery(session, camera, view, hands) {
+                write_labels(ui.ctx(), &scenery);
+            }
+            let mut board =
+                Board { session, view, settings: &mut keeper.settings, series, capture };
             wishes = panels.show(ui, &mut board);
         });
         // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.
@@ -202,18 +206,8 @@ impl Viewer {
         let opened = self.session.opened;
         if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {
             self.perform(Action::FrameAll);
+            self.camera.arrive();
             self.framed = opened;
-        }
-    }
-
-    fn scenery<'a>(&'a self, play: &'a Play) -> Scenery<'a> {
-        Scenery {
-            play,
-            scene_number: self.session.opened,
-            camera: &self.camera,
-            view: &self.view,
-            extras: &self.hands.extras,
-            inside: play.inspection(),
         }
     }
 
@@ -229,4 +223,22 @@ impl Viewer {
         let _ = target.write(|| self.gui.render());
         self.keep_picture(&target, false);
     }
+}
+
+/// What there is to draw, when a scene plays.
+fn scenery<'a>(
+    session: &'a Session,
+    camera: &'a Camera,
+    view: &'a View,
+    hands: &'a Hands,
+) -> Option<Scenery<'a>> {
+    let play = session.play()?;
+    Some(Scenery {
+        play,
+        scene_number: session.opened,
+        camera,
+        view,
+        extras: &hands.extras,
+        inside: play.inspection().filter(|_| needs_inspection(view)),
+    })
 }

@@ -44,14 +44,14 @@ impl Clerk {
     fn picture(&mut self, events: Vec<Event>) -> Vec<Wish> {
         self.user.picture(Vec::new());
         let Clerk { user, panels, settings, series, ctx } = self;
-        let User { session, view, camera, .. } = user;
+        let User { session, view, .. } = user;
         if let Some(play) = session.play() {
             series.take(play, session.opened, user.real_s);
         }
         let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32)));
         let input = egui::RawInput { screen_rect, time: Some(user.real_s), events, ..egui::RawInput::default() };
         let capture = Capture::default();
-        let mut board = Board { session, view, camera, settings, series, capture: &capture, labels: &[] };
+        let mut board = Board { session, view, settings, series, capture: &capture };
         let mut wishes = Vec::new();
         let _ = ctx.run_ui(input, |ui| wishes = panels.show(ui, &mut board));
         wishes

@@ -44,8 +44,9 @@ impl Framed {
         Some(Framed { target: 0.5 * (low + high), distance: 1.0, yaw, pitch }.fitting(&kept, aspect))
     }
 
-    /// In the same direction, so near that all balls just fit.
-    fn fitting(self, balls: &[(Vec3, f32)], aspect: f32) -> Framed {
+    /// In the same direction, so near that all balls (centre and radius, metres) just fit.
+    #[must_use]
+    pub fn fitting(self, balls: &[(Vec3, f32)], aspect: f32) -> Framed {
         let camera = Camera { yaw: self.yaw, pitch: self.pitch, ..Camera::default() };
         let (forward, axes) = (camera.forward(), [camera.right(), camera.up()]);
         let tangents = [FILLED * HALF_ANGLE.tan() * aspect, FILLED * HALF_ANGLE.tan()];

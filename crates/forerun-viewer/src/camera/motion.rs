@@ -25,8 +25,12 @@ pub(crate) enum Push {
 }
 
 /// What moves the camera.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Motion {
+    /// Of the picture: width over height.
+    pub(crate) aspect: f32,
+    /// Whether a button is held that was pressed beside all panels.
+    pub(crate) turning: bool,
     /// Whether the button is held with which keys fly.
     pub(crate) flying: bool,
     /// Whether it goes fast.
@@ -36,6 +40,20 @@ pub(crate) struct Motion {
     /// By [`Push`], whether its key is held.
     held: [bool; 6],
     journey: Option<Journey>,
+}
+
+impl Default for Motion {
+    fn default() -> Self {
+        Motion {
+            aspect: 1.6,
+            turning: false,
+            flying: false,
+            fast: false,
+            pointer: None,
+            held: [false; 6],
+            journey: None,
+        }
+    }
 }
 
 /// On the way.

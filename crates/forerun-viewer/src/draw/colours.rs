@@ -159,7 +159,7 @@ impl<'a> Paint<'a> {
 }
 
 /// The colour of the body or island with a number.
-pub(super) fn palette(number: u32) -> Rgb {
+fn palette(number: u32) -> Rgb {
     // Rows of as many bodies as there are colours are not to have columns of one colour.
     let number = number as usize;
     PALETTE[(number + 3 * (number / PALETTE.len())) % PALETTE.len()]
@@ -196,7 +196,7 @@ fn slice_colour(slices: u32) -> Rgb {
 }
 
 /// Between two colours.
-pub(super) fn mix(a: Rgb, b: Rgb, part: f32) -> Rgb {
+fn mix(a: Rgb, b: Rgb, part: f32) -> Rgb {
     let part = part.clamp(0.0, 1.0);
     [0, 1, 2].map(|k| (f32::from(a[k]) + (f32::from(b[k]) - f32::from(a[k])) * part).round() as u8)
 }

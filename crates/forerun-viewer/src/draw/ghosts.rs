@@ -3,7 +3,7 @@
 use forerun::{BodyId, BodyKind, Frame, Pose, Sample, Vec3};
 use three_d::{Context, Cull, RenderStates, WriteMask};
 
-use super::colours::{Paint, mix};
+use super::colours::Paint;
 use super::crowd::{Crowd, Drawn, Mark};
 use super::eye::Eye;
 use super::lines::{Ink, Lines};
@@ -98,7 +98,7 @@ impl Ghosts {
                 continue;
             }
             if let Some(seat) = layer.crowd.seat(context, surfaces, &body.shape) {
-                let [red, green, blue] = mix(paint.colour(*id, body, sample), [255; 3], 0.12);
+                let [red, green, blue] = paint.colour(*id, body, sample);
                 let ink = [red, green, blue, 255];
                 let drawn = Drawn { shape: &body.shape, pose: &sample.pose, ink, mark: Mark::None };
                 layer.crowd.add(seat, &drawn);

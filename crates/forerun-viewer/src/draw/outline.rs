@@ -65,7 +65,7 @@ impl Outline {
         let program = &programs.outline;
         program.use_texture("mask", mask);
         program.use_uniform("lineColour", vector(colour));
-        program.use_uniform("width", (1.6 * eye.pixels_per_point()).round() as i32);
+        program.use_uniform("width", (2.5 * eye.pixels_per_point()).round() as i32);
         program.use_vertex_attribute("corner", corners);
         let states = RenderStates { depth_test: DepthTest::Always, ..CLEAR };
         program.draw_arrays(states, eye.viewport, 6);

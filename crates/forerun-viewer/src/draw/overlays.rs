@@ -6,8 +6,9 @@ pub(super) use field::FieldSlice;
 
 use forerun::{Aabb, Frame, FrameInspection, InspectedContact, Touch, Vec3};
 
+use super::Scenery;
+use super::labels::Label;
 use super::lines::{Ink, Lines};
-use super::{Label, Scenery};
 
 /// So many labels can be read at once.
 const LABELS_MAX: usize = 300;

@@ -181,6 +181,7 @@ impl Shadows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::convert::vector;
 
     fn mapped(covered: &SunBox, point: Vec3) -> Vec3 {
         let at = covered.matrix() * vector(point).extend(1.0);

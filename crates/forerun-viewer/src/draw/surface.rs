@@ -68,11 +68,6 @@ impl Surfaces {
     pub(super) fn get(&self, look: Look) -> Option<&Surface> {
         self.by_look.get(&look)
     }
-
-    /// Forgets those that nobody names any more.
-    pub(super) fn clear(&mut self) {
-        self.by_look.clear();
-    }
 }
 
 fn surface_of(context: &Context, shape: &Shape) -> Surface {
@@ -85,9 +80,9 @@ fn surface_of(context: &Context, shape: &Shape) -> Surface {
     // Shapes of size 1 are possible.
     let facets = facets(&unit.unwrap_or(Shape::HalfSpace));
     let positions: Vec<[f32; 3]> =
-        facets.iter().flat_map(|facet| facet.corners.map(|at: Vec3| at.to_array())).collect();
+        facets.iter().flat_map(|facet| facet.corners.map(|corner| corner.to_array())).collect();
     let normals: Vec<[f32; 3]> =
-        facets.iter().flat_map(|facet| facet.normals.map(|at: Vec3| at.to_array())).collect();
+        facets.iter().flat_map(|facet| facet.normals.map(|normal| normal.to_array())).collect();
     Surface {
         vertices: positions.len() as u32,
         positions: VertexBuffer::new_with_data(context, &positions),

@@ -15,11 +15,14 @@ const NOTCH: f32 = 0.88;
 const NOTCH_POINTS: f32 = 24.0;
 
 /// Takes the keys that fly, before they mean anything else.
-pub(crate) fn take_keys(input: &mut Input, camera: &mut Camera) {
+pub(crate) fn take_flight(input: &mut Input, camera: &mut Camera) {
+    camera.motion.aspect = input.viewport.width.max(1) as f32 / input.viewport.height.max(1) as f32;
     for event in &mut input.events {
         match event {
-            Event::MousePress { button: MouseButton::Right, handled: false, .. } => {
-                camera.motion.flying = true;
+            Event::MousePress { button, handled, .. } => {
+                // What begins on a panel is not meant for the camera.
+                camera.motion.turning = !*handled;
+                camera.motion.flying |= !*handled && *button == MouseButton::Right;
             }
             Event::MouseRelease { button: MouseButton::Right, .. } | Event::MouseLeave => {
                 camera.motion.release();
@@ -64,7 +67,7 @@ pub(super) fn take(input: &mut Input, camera: &mut Camera) {
             Event::MouseMotion { button, position, modifiers, handled, .. } => {
                 let at = [position.x, position.y];
                 let from = camera.motion.pointer.replace(at).unwrap_or(at);
-                let Some(button) = button.filter(|_| !*handled) else { continue };
+                let Some(button) = button.filter(|_| !*handled && camera.motion.turning) else { continue };
                 let [right, up] = [0, 1].map(|k| (at[k] - from[k]) / height);
                 match button {
                     MouseButton::Right if camera.motion.is_pushed() => {

@@ -2,9 +2,8 @@
 
 use three_d::{DepthTexture2D, Interpolation, RenderTarget, Texture2D, Viewport, Wrapping};
 
-use super::Viewer;
+use super::{Viewer, scenery};
 use crate::capture::{self, FilmSize, Shot};
-use crate::draw::Scenery;
 use crate::series;
 
 impl Viewer {
@@ -41,15 +40,7 @@ impl Viewer {
     /// Draws the scene, without panels.
     pub(super) fn draw_scene(&mut self, target: &RenderTarget<'_>, viewport: Viewport) {
         let Viewer { session, view, camera, hands, painter, .. } = self;
-        let Some(play) = session.play() else { return };
-        let scenery = Scenery {
-            play,
-            scene_number: session.opened,
-            camera,
-            view,
-            extras: &hands.extras,
-            inside: play.inspection(),
-        };
+        let Some(scenery) = scenery(session, camera, view, hands) else { return };
         painter.draw(target, viewport, &scenery);
     }
 

@@ -14,6 +14,6 @@ void main() {
     vec3 toEye = normalize(eye - point);
     float front = abs(dot(normalize(facing), toEye));
     float edge = 1.0 - front;
-    vec3 lit = paint.rgb * (0.72 + 0.28 * front);
-    colour = vec4(mix(lit, vec3(1.0), 0.25 * edge), opacity * paint.a * (0.55 + 0.45 * edge * edge));
+    vec3 lit = paint.rgb * (0.8 + 0.2 * front);
+    colour = vec4(mix(lit, vec3(1.0), 0.35 * edge * edge), opacity * paint.a * (0.7 + 0.5 * edge * edge));
 }

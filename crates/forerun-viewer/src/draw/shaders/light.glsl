@@ -38,13 +38,14 @@ float unshaded(highp sampler2D map, vec3 at) {
         for (int x = -1; x <= 2; x++) {
             float columns = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
             ivec2 place = clamp(ivec2(base) + ivec2(x, y), ivec2(0), size - 1);
-            sum += texelFetch(map, place, 0).r < at.z ? 0.0 : rows * columns;
+            // What is deeper than all that casts is in the shade of what casts there.
+            sum += texelFetch(map, place, 0).r < min(at.z, 0.99999) ? 0.0 : rows * columns;
         }
     }
     return sum / 9.0;
 }
 
-bool within(vec3 at) { return all(greaterThan(at, vec3(0.003))) && all(lessThan(at, vec3(0.997))); }
+bool within(vec3 at) { return all(greaterThan(at.xy, vec2(0.003))) && all(lessThan(at.xy, vec2(0.997))); }
 
 // How much of the sun a point sees. A surface casts no shadow on itself: it is asked a texel or two above.
 float sunlit(vec3 point, vec3 normal) {
