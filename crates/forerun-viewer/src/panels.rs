@@ -1,6 +1,8 @@
 //! Panels: menus, buttons and the timeline strip, over the picture.
 
 mod help;
+mod inspector;
+mod tools;
 mod top;
 mod transport;
 
@@ -25,6 +27,8 @@ pub fn show(ui: &mut egui::Ui, session: &mut Session, view: &mut View) -> Vec<Wi
     let mut wishes = Vec::new();
     egui::Panel::top("menus").show_inside(ui, |ui| top::show(ui, session, view, &mut wishes));
     egui::Panel::bottom("time").show_inside(ui, |ui| transport::show(ui, session, &mut wishes));
+    tools::show(ui, session, view, &mut wishes);
+    inspector::show(ui, session, view);
     help::show(ui.ctx(), view);
     wishes
 }
