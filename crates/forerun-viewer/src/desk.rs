@@ -1,9 +1,10 @@
 //! Desk: what the user works with, without a window: what keys ask for is done here, and what the mouse does.
 
+use forerun::{BodyId, Sample, Vec3};
 use three_d::Event;
 
 use crate::actions::{Action, action_of};
-use crate::camera::Camera;
+use crate::camera::{Camera, Framed};
 use crate::hands::Hands;
 use crate::input::Input;
 use crate::session::{Play, Session};
@@ -106,8 +107,25 @@ fn perform_in_time(play: &mut Play, action: Action) {
     }
 }
 
-fn focus(play: &Play, camera: &mut Camera, bodies: &[forerun::BodyId]) {
-    if let Some((min, max)) = play.bounds(bodies) {
-        camera.look_at(0.5 * (min + max), 0.5 * (max - min).length());
+/// Travels to bodies; with none to all, but for strays.
+fn focus(play: &Play, camera: &mut Camera, bodies: &[BodyId]) {
+    let (balls, aspect) = (balls_of(play, bodies), camera.motion.aspect);
+    let Some(around) = Framed::around(&balls, aspect) else { return };
+    if bodies.is_empty() {
+        camera.travel(around);
+    } else {
+        // From the direction that it looks in already.
+        let Framed { yaw, pitch, .. } = camera.framed();
+        camera.travel(Framed { yaw, pitch, ..around }.fitting(&balls, aspect));
     }
+}
+
+/// Balls around bodies as they are drawn: those picked, or with none all that has an end.
+fn balls_of(play: &Play, bodies: &[BodyId]) -> Vec<(Vec3, f32)> {
+    let samples = play.samples.iter().filter(|(id, _)| bodies.is_empty() || bodies.contains(id));
+    let ball = |(id, sample): &(BodyId, Sample)| {
+        let body = play.body(*id).filter(|body| body.radius.is_finite())?;
+        Some((sample.pose.transform_point(body.frame.position), body.radius))
+    };
+    samples.filter_map(ball).collect()
 }

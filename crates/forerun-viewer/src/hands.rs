@@ -14,6 +14,7 @@ use crate::draw::Extras;
 use crate::input::Input;
 use crate::session::Play;
 use crate::view::{Grip, Tool, View};
+pub(crate) use camera_hand::take_flight;
 use drag::Drag;
 use missile::Missiles;
 use sight::Sight;
@@ -59,7 +60,7 @@ impl Hands {
         for event in &mut input.events {
             self.take_event(event, play, &Sight::new(camera, size), view);
         }
-        camera_hand::take(&mut input.events, camera, size[1]);
+        camera_hand::take(input, camera);
         self.go_on(play, &Sight::new(camera, size), view);
     }
 

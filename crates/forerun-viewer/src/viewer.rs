@@ -5,8 +5,8 @@ use three_d::{Context, Event, FrameInput, FrameOutput, GUI};
 use crate::actions::Action;
 use crate::camera::Camera;
 use crate::desk::{Desk, keys_of};
-use crate::draw::{Painter, Scenery};
-use crate::hands::Hands;
+use crate::draw::{Painter, Scenery, needs_inspection, write_labels};
+use crate::hands::{Hands, take_flight};
 use crate::host::{Host, SceneSource};
 use crate::input::Input;
 use crate::panels::{self, Wish};
@@ -52,6 +52,11 @@ impl Viewer {
     pub fn picture(&mut self, mut frame: FrameInput) -> FrameOutput {
         let mut input = Input::of(&mut frame);
         self.session.show(input.real_s);
+        if needs_inspection(&self.view)
+            && let Some(play) = self.session.play_mut()
+        {
+            play.ask_inspection();
+        }
         self.frame_new_scene();
         let wishes = self.show_panels(&mut input);
         for wish in wishes {
@@ -61,6 +66,8 @@ impl Viewer {
             }
         }
         self.window = Window { viewport: input.viewport, pixels_per_point: input.pixels_per_point };
+        // Keys that fly mean nothing else while they do.
+        take_flight(&mut input, &mut self.camera);
         for action in keys_of(&mut input) {
             self.perform(action);
         }
@@ -94,10 +101,21 @@ impl Viewer {
     }
 
     fn show_panels(&mut self, input: &mut Input) -> Vec<Wish> {
-        let Viewer { gui, session, view, .. } = self;
+        let Viewer { gui, session, view, camera, hands, .. } = self;
         let mut wishes = Vec::new();
         let scale = input.pixels_per_point * view.scale;
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
+            if let Some(play) = session.play() {
+                let scenery = Scenery {
+                    play,
+                    scene_number: session.opened,
+                    camera,
+                    view,
+                    extras: &hands.extras,
+                    inside: play.inspection().filter(|_| needs_inspection(view)),
+                };
+                write_labels(ui.ctx(), &scenery);
+            }
             wishes = panels::show(ui, session, view);
         });
         // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.
@@ -116,6 +134,7 @@ impl Viewer {
         let opened = self.session.opened;
         if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {
             self.perform(Action::FrameAll);
+            self.camera.arrive();
             self.framed = opened;
         }
     }
@@ -129,6 +148,7 @@ impl Viewer {
                 camera: &self.camera,
                 view: &self.view,
                 extras: &self.hands.extras,
+                inside: play.inspection().filter(|_| needs_inspection(&self.view)),
             };
             self.painter.draw(&target, frame.viewport, &scenery);
         } else {
