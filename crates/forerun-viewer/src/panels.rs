@@ -3,12 +3,14 @@
 mod files;
 mod help;
 mod icons;
+mod inspector;
 mod legend;
 mod messages;
 mod palette;
 mod plots;
 mod scenes;
 mod strip;
+mod tools;
 mod top;
 mod transport;
 
@@ -80,6 +82,8 @@ impl Panels {
                 .size_range(140.0..=700.0)
                 .show_inside(ui, |ui| self.plots.show(ui, board, &palette, &mut wishes));
         }
+        tools::show(ui, board.session, board.view, &mut wishes);
+        inspector::show(ui, board.session, board.view);
         legend::show(ui, board);
         self.scenes.show(ui.ctx(), &mut wishes);
         self.files.show(ui.ctx(), &board.settings.recent, &mut wishes);

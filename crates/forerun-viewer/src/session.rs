@@ -2,6 +2,7 @@
 
 mod acts;
 mod coupling;
+mod editing;
 mod history;
 mod play;
 mod questions;

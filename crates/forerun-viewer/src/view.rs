@@ -201,6 +201,8 @@ impl Default for Grip {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Open {
+    /// The panel of tools.
+    pub tools: bool,
     /// The panel of the selection.
     pub inspector: bool,
     /// The plots.
@@ -211,7 +213,7 @@ pub struct Open {
 
 impl Default for Open {
     fn default() -> Self {
-        Open { inspector: true, plots: false, help: false }
+        Open { tools: true, inspector: true, plots: false, help: false }
     }
 }
 

@@ -6,6 +6,7 @@ use forerun::{
     Aabb, Body, BodyId, Coupled, Decoupled, DriverError, Frame, Picture, Refusal, Sample, Scene, Vec3,
 };
 
+use super::editing::Editing;
 use super::history::History;
 use super::questions::Questions;
 use super::selection::Selection;
@@ -39,6 +40,8 @@ pub struct Play {
     pub rewinding: bool,
     /// What the user did.
     pub(super) history: History,
+    /// What is being changed in a panel.
+    pub(super) editing: Option<Editing>,
     /// What physics was asked.
     pub(super) questions: Questions,
     /// The last body that the user brought in.
@@ -62,6 +65,7 @@ impl Play {
             speed: 1.0,
             rewinding: false,
             history: History::default(),
+            editing: None,
             questions: Questions::default(),
             added: None,
             real_s: 0.0,
