@@ -68,8 +68,8 @@ impl Capture {
     }
 
     /// Keeps a text beside the pictures.
-    pub fn save_text(&mut self, name: &str, text: &str) {
-        self.message = Some(host::save_file(name, text.as_bytes()));
+    pub fn save_text(&mut self, name: &str, text: String) {
+        self.saving.push(host::save_text(name, text));
     }
 
     /// Hears of what has been written since.

@@ -7,11 +7,19 @@ use forerun::{Decoupled, Scene};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
+#[cfg(target_arch = "wasm32")]
+mod web_files;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
-    Choosing, FilmWriter, Host, Saving, Starting, Watch, choose_scene, load_settings, save_file,
-    save_picture, save_settings, watch,
+    Choosing, FilmWriter, Host, Saving, Starting, Watch, choose_scene, load_settings, save_picture,
+    save_settings, save_text, watch,
+};
+
+#[cfg(target_arch = "wasm32")]
+pub use web_files::{
+    Choosing, FilmWriter, Saving, Watch, choose_scene, load_settings, save_picture, save_settings, save_text,
+    watch,
 };
 
 /// Where a scene comes from.

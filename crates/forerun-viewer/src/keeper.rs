@@ -13,6 +13,8 @@ const KEEP_EVERY_S: f64 = 2.0;
 pub struct Keeper {
     /// What is remembered.
     pub settings: Settings,
+    /// Whether nothing is written: the viewer runs for a script.
+    pub silent: bool,
     /// As it was written last.
     kept: String,
     kept_s: f64,
@@ -26,7 +28,7 @@ impl Keeper {
     #[must_use]
     pub fn new(settings: Settings) -> Keeper {
         let kept = settings.text();
-        Keeper { settings, kept, kept_s: 0.0, watch: None, opened: 0 }
+        Keeper { settings, silent: false, kept, kept_s: 0.0, watch: None, opened: 0 }
     }
 
     /// Once a picture, at the window's clock (seconds).
@@ -54,7 +56,7 @@ impl Keeper {
     pub fn keep(&mut self, view: &View) {
         self.settings.view = *view;
         let text = self.settings.text();
-        if text != self.kept {
+        if text != self.kept && !self.silent {
             host::save_settings(&text);
             self.kept = text;
         }

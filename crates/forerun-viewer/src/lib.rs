@@ -23,8 +23,10 @@ pub mod settings;
 pub mod tessellate;
 pub mod view;
 pub mod viewer;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod window;
 
 pub use host::SceneSource;
 pub use viewer::Viewer;
+#[cfg(not(target_arch = "wasm32"))]
 pub use window::{NoWindow, Screenshot, WindowOptions, open};

@@ -110,7 +110,7 @@ impl Viewer {
     /// As the window's title says it.
     #[must_use]
     pub fn title(&self) -> String {
-        format!("{} - forerun", self.session.source.name())
+        format!("forerun: {}", self.session.source.name())
     }
 
     /// Whether the next picture is like this one, unless something happens.

@@ -88,6 +88,10 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
         .map_err(|error| NoWindow::because(error.to_string()))?;
     let context = context_of(&window)?;
     let mut viewer = Viewer::new(&context, options.host, options.source, settings);
+    if options.screenshot.is_some() {
+        viewer.keeper.silent = true;
+        viewer.keeper.settings.greeted = true;
+    }
     let mut inputs = FrameInputGenerator::from_winit_window(&window);
     let mut reporter = options.report.map(Reporter::new);
     let mut errand =

@@ -3,8 +3,8 @@
 mod files;
 mod pictures;
 
-pub use files::{Choosing, Watch, choose_scene, load_settings, save_file, save_settings, watch};
-pub use pictures::{FilmWriter, Saving, save_picture};
+pub use files::{Choosing, Watch, choose_scene, load_settings, save_settings, watch};
+pub use pictures::{FilmWriter, Saving, save_picture, save_text};
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -67,7 +67,7 @@ impl Viewer {
             ("edits", series::edits_csv(&series.edits)),
         ];
         for (name, table) in tables {
-            self.capture.save_text(&format!("{stem}-{name}.csv"), &table);
+            self.capture.save_text(&format!("{stem}-{name}.csv"), table);
         }
     }
 }

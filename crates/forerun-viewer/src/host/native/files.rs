@@ -47,7 +47,7 @@ fn config_folder() -> Option<PathBuf> {
 ///
 /// # Errors
 /// When the folder cannot be written to.
-pub fn save_file(name: &str, content: &[u8]) -> Result<String, String> {
+pub(super) fn save_file(name: &str, content: &[u8]) -> Result<String, String> {
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
     let path = free_path(stem, ending);
     let kept = std::fs::write(&path, content);

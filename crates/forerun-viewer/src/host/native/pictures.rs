@@ -22,10 +22,20 @@ pub struct Saving {
 /// Writes a picture as PNG.
 #[must_use]
 pub fn save_picture(name: &str, shot: Shot) -> Saving {
+    save_later(name, move || shot.png())
+}
+
+/// Writes a text.
+#[must_use]
+pub fn save_text(name: &str, text: String) -> Saving {
+    save_later(name, move || Ok(text.into_bytes()))
+}
+
+fn save_later(name: &str, content: impl FnOnce() -> Result<Vec<u8>, String> + Send + 'static) -> Saving {
     let (sender, saved) = channel();
     let name = name.to_owned();
     std::thread::spawn(move || {
-        let done = shot.png().and_then(|file| save_file(&name, &file));
+        let done = content().and_then(|content| save_file(&name, &content));
         // When nobody waits for it any more, the viewer has ended.
         let _ = sender.send(done);
     });
