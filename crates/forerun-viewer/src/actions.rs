@@ -31,6 +31,8 @@ pub enum Action {
     FrameAll,
     /// Remove the selected bodies.
     Delete,
+    /// Another body, where the camera looks.
+    Add,
     /// Another body like the selected one, beside it.
     Duplicate,
     /// Select nothing.
@@ -119,6 +121,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     on(Key::T, With::Nothing, Action::ThrowTool, "throw"),
     on(Key::P, With::Nothing, Action::PushTool, "push"),
     on(Key::Delete, With::Nothing, Action::Delete, "remove the selection"),
+    on(Key::Insert, With::Nothing, Action::Add, "a body where the camera looks, as it would be thrown"),
     on(Key::D, With::Ctrl, Action::Duplicate, "another one like the selection"),
     on(Key::A, With::Ctrl, Action::SelectAll, "select all that moves"),
     on(Key::Escape, With::Nothing, Action::Deselect, "select nothing"),

@@ -8,6 +8,7 @@
 
 pub mod actions;
 pub mod camera;
+pub mod desk;
 pub mod draw;
 pub mod hands;
 pub mod host;

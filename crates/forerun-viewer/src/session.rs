@@ -1,12 +1,24 @@
 //! Session: the scene that is open, from the choice in a menu to its end.
 
+mod acts;
+mod coupling;
+mod history;
 mod play;
+mod questions;
 mod selection;
 
+use std::time::Duration;
+
+pub use acts::Last;
+pub use history::{History, Step};
 pub use play::Play;
 pub use selection::Selection;
 
 use crate::host::{Host, SceneSource, Starting};
+use crate::report::StripPlace;
+
+/// The slowest that physics is made on purpose. Seconds a step.
+pub const SLOW_DOWN_MAX_S: f32 = 1.0;
 
 /// What stands where the scene is to be.
 #[derive(Debug)]
@@ -28,6 +40,10 @@ pub struct Session {
     pub stage: Stage,
     /// How many scenes were opened so far: who keeps something of a scene keeps this number with it.
     pub opened: u64,
+    /// How much slower every step of the physics is made, to see what a slow scene does. Seconds, 0 to 1.
+    pub slow_down_s: f32,
+    /// Where the timeline strip was drawn last, for scripts.
+    pub strip: Option<StripPlace>,
     host: Host,
 }
 
@@ -36,12 +52,15 @@ impl Session {
     #[must_use]
     pub fn new(host: Host, source: SceneSource) -> Session {
         let stage = Stage::Loading(host.start(&source));
-        Session { source, stage, opened: 1, host }
+        Session { source, stage, opened: 1, slow_down_s: 0.0, strip: None, host }
     }
 
     /// Opens another scene. The one before ends.
     pub fn open(&mut self, source: SceneSource) {
-        self.stage = Stage::Loading(self.host.start(&source));
+        let before = std::mem::replace(&mut self.stage, Stage::Loading(self.host.start(&source)));
+        if let Stage::Playing(play) = before {
+            self.host.end(play.driver);
+        }
         self.source = source;
         self.opened += 1;
     }
@@ -61,10 +80,27 @@ impl Session {
                 Err(message) => Stage::Failed(message),
             };
         }
-        if let Stage::Playing(play) = &mut self.stage
-            && let Err(message) = play.show(real_s)
-        {
-            self.stage = Stage::Failed(message);
+        let slow_down_s = self.slow_down_s.clamp(0.0, SLOW_DOWN_MAX_S);
+        self.host.slow_down(slow_down_s);
+        if let Stage::Playing(play) = &mut self.stage {
+            play.slow_coupled(Duration::from_secs_f32(slow_down_s));
+            if let Err(message) = play.show(real_s) {
+                self.stage = Stage::Failed(message);
+            }
+        }
+    }
+
+    /// From the driver that runs ahead to the traditional one, or back. What is shown goes on from where it is.
+    pub fn switch_driver(&mut self) {
+        let Stage::Playing(play) = &mut self.stage else { return };
+        let switched = match play.is_coupled() {
+            true => play
+                .decouple(&self.host)
+                .map(|before| before.into_iter().for_each(|before| self.host.end(before))),
+            false => play.couple(&self.host),
+        };
+        if let Err(message) = switched {
+            play.notice = Some(message);
         }
     }
 

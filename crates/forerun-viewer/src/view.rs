@@ -112,6 +112,31 @@ pub struct Overlays {
     pub field_height: f32,
 }
 
+/// What a press of the left button does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tool {
+    /// Picks a body, and drags it by a spring.
+    #[default]
+    Select,
+    /// Throws something.
+    Throw,
+    /// Pushes a body.
+    Push,
+}
+
+impl Tool {
+    /// As menus and scripts say it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Tool::Select => "select",
+            Tool::Throw => "throw",
+            Tool::Push => "push",
+        }
+    }
+}
+
 /// What is thrown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -131,6 +156,8 @@ pub enum Missile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Grip {
+    /// What a press of the left button does.
+    pub tool: Tool,
     /// What is thrown.
     pub missile: Missile,
     /// How large: the radius of a ball. Metres.
@@ -147,7 +174,15 @@ pub struct Grip {
 
 impl Default for Grip {
     fn default() -> Self {
-        Grip { missile: Missile::Ball, size: 0.3, speed: 15.0, density: 1000.0, frequency: 3.0, push: 3.0 }
+        Grip {
+            tool: Tool::Select,
+            missile: Missile::Ball,
+            size: 0.3,
+            speed: 15.0,
+            density: 1000.0,
+            frequency: 3.0,
+            push: 3.0,
+        }
     }
 }
 

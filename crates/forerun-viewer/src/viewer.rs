@@ -1,21 +1,18 @@
 //! Viewer: one picture after another, as a short story: take what happened, show, do what was asked, draw.
 
-use forerun::Change;
 use three_d::{Context, Event, FrameInput, FrameOutput, GUI};
 
-use crate::actions::{Action, action_of};
+use crate::actions::Action;
 use crate::camera::Camera;
-use crate::draw::Painter;
-use crate::hands::{Hands, Tool};
+use crate::desk::{Desk, keys_of};
+use crate::draw::{Painter, Scenery, needs_inspection, write_labels};
+use crate::hands::{Hands, take_flight};
 use crate::host::{Host, SceneSource};
 use crate::input::Input;
 use crate::panels::{self, Wish};
-use crate::report::Report;
-use crate::session::{Play, Session};
+use crate::report::{Report, Reported, Window};
+use crate::session::Session;
 use crate::view::View;
-
-/// Half and double speed.
-const SPEED_FACTOR: f64 = 2.0;
 
 /// The whole viewer, but the window that it is in.
 pub struct Viewer {
@@ -31,6 +28,7 @@ pub struct Viewer {
     /// The scene that the camera has looked at as a whole.
     framed: u64,
     pictures: u64,
+    window: Window,
 }
 
 impl Viewer {
@@ -46,6 +44,7 @@ impl Viewer {
             gui: GUI::new(context),
             framed: 0,
             pictures: 0,
+            window: Window::default(),
         }
     }
 
@@ -53,6 +52,11 @@ impl Viewer {
     pub fn picture(&mut self, mut frame: FrameInput) -> FrameOutput {
         let mut input = Input::of(&mut frame);
         self.session.show(input.real_s);
+        if needs_inspection(&self.view)
+            && let Some(play) = self.session.play_mut()
+        {
+            play.ask_inspection();
+        }
         self.frame_new_scene();
         let wishes = self.show_panels(&mut input);
         for wish in wishes {
@@ -61,10 +65,13 @@ impl Viewer {
                 Wish::Open(source) => self.session.open(source),
             }
         }
-        self.take_keys(&mut input);
-        if let Some(play) = self.session.play_mut() {
-            self.hands.take(&mut input, play, &mut self.camera, &self.view);
+        self.window = Window { viewport: input.viewport, pixels_per_point: input.pixels_per_point };
+        // Keys that fly mean nothing else while they do.
+        take_flight(&mut input, &mut self.camera);
+        for action in keys_of(&mut input) {
+            self.perform(action);
         }
+        self.desk().take_mouse(&mut input);
         self.draw(&frame);
         self.pictures += 1;
         FrameOutput::default()
@@ -73,110 +80,81 @@ impl Viewer {
     /// The state as plain values, for scripts.
     #[must_use]
     pub fn report(&self) -> Report {
-        Report::of(&self.session, &self.view, self.pictures)
+        Report::of(&Reported {
+            session: &self.session,
+            view: &self.view,
+            hands: &self.hands,
+            camera: &self.camera,
+            window: self.window,
+            pictures: self.pictures,
+        })
     }
 
     /// Does what a key, a menu or a button asks for.
     pub fn perform(&mut self, action: Action) {
-        match action {
-            Action::Reload => self.session.reload(),
-            Action::Help => self.view.open.help ^= true,
-            Action::Plots => self.view.open.plots ^= true,
-            Action::Inspector => self.view.open.inspector ^= true,
-            Action::Ghosts => self.view.ghosts.shown ^= true,
-            Action::Contacts => self.view.overlays.contacts ^= true,
-            Action::NextColour => self.view.colour_by = self.view.colour_by.next(),
-            Action::SelectTool => self.hands.tool = Tool::Select,
-            Action::ThrowTool => self.hands.tool = Tool::Throw,
-            Action::PushTool => self.hands.tool = Tool::Push,
-            Action::Focus => self.focus(false),
-            Action::FrameAll => self.focus(true),
-            action => {
-                if let Some(play) = self.session.play_mut() {
-                    perform_in(play, action);
-                }
-            }
-        }
+        self.desk().perform(action);
+    }
+
+    fn desk(&mut self) -> Desk<'_> {
+        let Viewer { session, view, camera, hands, .. } = self;
+        Desk { session, view, camera, hands }
     }
 
     fn show_panels(&mut self, input: &mut Input) -> Vec<Wish> {
-        let Viewer { gui, session, view, .. } = self;
+        let Viewer { gui, session, view, camera, hands, .. } = self;
         let mut wishes = Vec::new();
         let scale = input.pixels_per_point * view.scale;
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
+            if let Some(play) = session.play() {
+                let scenery = Scenery {
+                    play,
+                    scene_number: session.opened,
+                    camera,
+                    view,
+                    extras: &hands.extras,
+                    inside: play.inspection().filter(|_| needs_inspection(view)),
+                };
+                write_labels(ui.ctx(), &scenery);
+            }
             wishes = panels::show(ui, session, view);
         });
-        wishes
-    }
-
-    fn take_keys(&mut self, input: &mut Input) {
-        for event in &mut input.events {
-            if let Event::KeyPress { kind, modifiers, handled: handled @ false } = event
-                && let Some(action) = action_of(*kind, *modifiers)
-            {
-                *handled = true;
-                self.perform(action);
+        // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.
+        if gui.context().is_pointer_over_egui() {
+            for event in &mut input.events {
+                if let Event::MousePress { handled, .. } | Event::MouseWheel { handled, .. } = event {
+                    *handled = true;
+                }
             }
         }
+        wishes
     }
 
     /// A scene that has just begun is looked at as a whole.
     fn frame_new_scene(&mut self) {
         let opened = self.session.opened;
         if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {
-            self.focus(true);
+            self.perform(Action::FrameAll);
+            self.camera.arrive();
             self.framed = opened;
-        }
-    }
-
-    fn focus(&mut self, everything: bool) {
-        let Some(play) = self.session.play() else { return };
-        let bodies = if everything { &[] } else { play.selection.bodies() };
-        if let Some((min, max)) = play.bounds(bodies) {
-            self.camera.look_at(0.5 * (min + max), 0.5 * (max - min).length());
         }
     }
 
     fn draw(&mut self, frame: &FrameInput) {
         let target = frame.screen();
         if let Some(play) = self.session.play() {
-            self.painter.draw(&target, frame.viewport, play, self.session.opened, &self.camera, &self.view);
+            let scenery = Scenery {
+                play,
+                scene_number: self.session.opened,
+                camera: &self.camera,
+                view: &self.view,
+                extras: &self.hands.extras,
+                inside: play.inspection().filter(|_| needs_inspection(&self.view)),
+            };
+            self.painter.draw(&target, frame.viewport, &scenery);
         } else {
             target.clear(three_d::ClearState::color_and_depth(0.2, 0.22, 0.25, 1.0, 1.0));
         }
         // Only a panic in the library could make this fail.
         let _ = target.write(|| self.gui.render());
-    }
-}
-
-/// Actions that need a scene.
-fn perform_in(play: &mut Play, action: Action) {
-    let snapshot = play.picture.snapshot.clone();
-    let seconds = snapshot.frame_seconds();
-    match action {
-        Action::PlayPause => play.set_paused(!play.paused),
-        Action::StepForward => play.step(1),
-        Action::StepBack => play.step(-1),
-        Action::JumpForward => play.seek(play.picture.time_s + 1.0),
-        Action::JumpBack => play.seek(play.picture.time_s - 1.0),
-        Action::GoToStart => play.seek(snapshot.oldest().seconds(seconds)),
-        Action::GoToHorizon => play.seek(snapshot.horizon().seconds(seconds)),
-        Action::Slower => play.set_speed(play.speed / SPEED_FACTOR),
-        Action::Faster => play.set_speed(play.speed * SPEED_FACTOR),
-        Action::Rewind => play.set_rewinding(!play.rewinding),
-        Action::Undo => play.undo(),
-        Action::Redo => play.redo(),
-        Action::Deselect => play.selection.clear(),
-        Action::SelectAll => {
-            let moving = |id: &forerun::BodyId| play.body(*id).is_some_and(|body| body.is_dynamic());
-            let bodies: Vec<_> = play.samples.iter().map(|(id, _)| *id).filter(moving).collect();
-            play.selection.pick_all(bodies);
-        }
-        Action::Delete => {
-            for body in play.selection.bodies().to_vec() {
-                play.change(Change::Remove { body });
-            }
-        }
-        _ => {}
     }
 }

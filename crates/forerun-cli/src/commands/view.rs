@@ -28,7 +28,7 @@ pub(crate) fn open_first() -> Result<(), NoWindow> {
 fn open(args: &ViewArgs, scene: &str) -> Result<(), NoWindow> {
     forerun_viewer::open(WindowOptions {
         source: SceneSource::of(scene),
-        host: Host { baking: MeshBaking { cache: cache::of_meshes(), watch: None } },
+        host: Host::new(MeshBaking { cache: cache::of_meshes(), watch: None }),
         size: args.size,
         report: args.report.clone(),
     })
