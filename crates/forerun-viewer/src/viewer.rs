@@ -125,7 +125,7 @@ impl Viewer {
             Stage::Loading(_) => false,
             Stage::Failed(_) => true,
         };
-        resting && !self.capture.is_busy()
+        resting && !self.capture.is_busy() && !self.camera.motion.is_moving()
     }
 
     /// Does what a key, a menu or a button asks for.

@@ -83,6 +83,11 @@ impl Motion {
         self.flying && self.held.contains(&true)
     }
 
+    /// Whether the camera is on its way somewhere.
+    pub(crate) fn is_moving(&self) -> bool {
+        self.is_pushed() || self.journey.is_some()
+    }
+
     /// Lets go of everything.
     pub(crate) fn release(&mut self) {
         self.held = [false; 6];

@@ -9,12 +9,14 @@ use crate::view::View;
 
 /// What the mouse does, and where.
 pub(super) const MOUSE: &[(&str, &str)] = &[
-    ("Left: click", "pick a body; with Shift one more"),
-    ("Left: drag a body", "pull it by a spring, throw or push: as the tool says"),
-    ("Left: drag beside bodies", "turn round the scene"),
-    ("Right: drag", "turn round the scene"),
-    ("Middle: drag, or Shift and right", "move sideways"),
-    ("Wheel", "nearer, farther"),
+    ("Left: click", "pick a body; with Shift or Ctrl one more"),
+    ("Left: drag a body", "pull it by a spring; with Shift along the ground"),
+    ("Left, tool throw", "hold to aim, let go to throw; Esc: nothing"),
+    ("Left, tool push", "push the body away"),
+    ("Left beside bodies, right: drag", "turn round the scene"),
+    ("Right held, W A S D Q E", "fly; with Shift faster"),
+    ("Middle, Shift and right: drag", "move sideways"),
+    ("Wheel", "nearer to what is under the mouse"),
     ("Timeline: click, drag", "show another time"),
     ("Timeline: wheel", "zoom the strip"),
     ("Timeline: right drag, twice right", "move the strip, show all of it"),

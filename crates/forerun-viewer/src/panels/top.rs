@@ -70,9 +70,9 @@ fn scene(ui: &mut Ui, board: &Board<'_>, wishes: &mut Vec<Wish>) {
 
 fn edit(ui: &mut Ui, board: &Board<'_>, wishes: &mut Vec<Wish>) {
     ui.set_min_width(200.0);
-    let snapshot = board.session.play().map(|play| &play.picture.snapshot);
-    let (undo, redo) = snapshot.map_or((false, false), |snapshot| (snapshot.can_undo(), snapshot.can_redo()));
-    let picked = board.session.play().is_some_and(|play| play.selection.active().is_some());
+    let play = board.session.play();
+    let (undo, redo) = play.map_or((false, false), |play| (play.to_undo().1 > 0, play.to_redo().1 > 0));
+    let picked = play.is_some_and(|play| play.selection.active().is_some());
     let mut row = |ui: &mut Ui, enabled: bool, action, text| {
         ui.add_enabled_ui(enabled, |ui| item(ui, wishes, action, text));
     };
@@ -83,6 +83,7 @@ fn edit(ui: &mut Ui, board: &Board<'_>, wishes: &mut Vec<Wish>) {
     row(ui, picked, Action::Deselect, "Select nothing");
     row(ui, picked, Action::Focus, "Look at the selection");
     ui.separator();
+    row(ui, true, Action::Add, "Add a body");
     row(ui, picked, Action::Duplicate, "Duplicate");
     row(ui, picked, Action::Delete, "Remove");
 }
@@ -123,6 +124,7 @@ fn view(ui: &mut Ui, view: &mut View, wishes: &mut Vec<Wish>) {
     };
     panel(ui, &mut view.open.plots, "Plots", Action::Plots);
     panel(ui, &mut view.open.inspector, "Panel of the selection", Action::Inspector);
+    ui.checkbox(&mut view.open.tools, "Panel of tools");
 }
 
 fn ghosts(ui: &mut Ui, view: &mut View) {
