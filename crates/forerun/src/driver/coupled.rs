@@ -407,4 +407,121 @@ mod tests {
         }
         assert!((clock.now().as_secs_f64() - driver.time_s() - 0.958).abs() < 1e-9);
     }
+
+    /// A timeline of a ball that falls and two boxes on the ground, one of which is soon gone.
+    fn falling() -> Timeline {
+        let cube = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) });
+        let mut ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.5 })).at(Vec3::Y * 30.0);
+        ball.velocity = Vec3::X;
+        let bodies = [
+            BodyDef::fixed(Shape::HalfSpace),
+            BodyDef::new(cube.clone()).at(Vec3::new(5.0, 0.5, 0.0)),
+            BodyDef::new(cube).at(Vec3::new(9.0, 0.5, 0.0)),
+            ball,
+        ];
+        let mut timeline = Timeline::new(&bodies, Environment::default(), TimelineSettings::default())
+            .expect("plain bodies");
+        timeline.change(Frame(10), Change::Remove { body: BodyId(1) }).expect("it is there");
+        timeline
+            .change(Frame(20), Change::SetGravityScale { body: BodyId(3), scale: 0.5 })
+            .expect("it is there");
+        while timeline.advance() != forerun_timeline::Progress::Idle {}
+        timeline
+    }
+
+    #[test]
+    fn it_goes_on_from_what_another_driver_shows_and_back_again() {
+        let (clock, threads) = (Clock::by_hand(), Threads::all().expect("threads"));
+        let snapshot = falling().snapshot();
+        let time_s = 60.25 / 60.0;
+        let limits = StepLimits::default();
+        let mut driver =
+            Coupled::of_snapshot(&snapshot, time_s, clock.clone(), threads, limits).expect("finite");
+        assert_eq!(driver.names(), [0, 2, 3].map(BodyId));
+        let mut drawn = Vec::new();
+        driver.sample_all(&mut drawn);
+        let mut shown = Vec::new();
+        snapshot.sample_all(time_s, &mut shown);
+        assert_eq!(drawn, shown);
+        // The first cycle shows that, the next goes on: with half the gravity, as the command said.
+        driver.show();
+        let before = drawn[2].1;
+        for _ in 0..30 {
+            clock.turn(Duration::from_millis(20));
+            driver.show();
+        }
+        driver.sample_all(&mut drawn);
+        let after = drawn[2].1;
+        assert!((after.velocity.y - (before.velocity.y - 0.5 * 9.81 * 0.6)).abs() < 1e-3, "{after:?}");
+        assert!((driver.time_s() - (time_s + 0.6)).abs() < 1e-9);
+        let picture = driver.picture();
+        assert_eq!((picture.time_s, picture.frame), (driver.time_s(), Frame(96)));
+        assert!((picture.wished_s - driver.time_s()).abs() < 1e-9 && (picture.rate - 1.0).abs() < 1e-9);
+        let mut queried = Vec::new();
+        picture.snapshot.sample_all(picture.time_s, &mut queried);
+        assert_eq!(queried.len(), 3);
+        for ((id, queried), (body, drawn)) in queried.iter().zip(&drawn) {
+            assert_eq!((id, queried.pose.position), (body, drawn.pose.position));
+        }
+        assert!(picture.snapshot.inspect(picture.frame).is_some());
+
+        let timeline = driver.timeline(TimelineSettings::default()).expect("plain states");
+        assert_eq!((timeline.oldest(), timeline.display()), (Frame(96), Frame(96)));
+        assert_eq!(timeline.bodies_at(Frame(96)), driver.names());
+        assert_eq!(timeline.environment_at(Frame(96)).settings.frame_seconds, 1.0 / 60.0);
+        for (name, state) in driver.names().iter().zip(driver.world().states()) {
+            let there = timeline.state(*name, Frame(96)).expect("it is there");
+            assert_eq!((there.position, there.velocity), (state.position, state.velocity));
+        }
+        assert_eq!(timeline.body_at(BodyId(3), Frame(96)).map(|body| body.gravity_scale), Some(0.5));
+        // Names go on where they were.
+        assert_eq!((timeline.names(), driver.coming_body()), (4, BodyId(4)));
+    }
+
+    #[test]
+    fn bodies_come_and_go_and_keep_their_names() {
+        let clock = Clock::by_hand();
+        let mut driver = coupled(&clock);
+        let ball = || BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 }));
+        assert_eq!(driver.add(ball().at(Vec3::X * 5.0)), Ok(BodyId(1)));
+        assert_eq!(driver.picture().snapshot.bodies_at(Frame(0)).count(), 2);
+        assert_eq!(driver.change(&Change::Remove { body: BodyId(0) }), Ok(()));
+        let gone = Change::Remove { body: BodyId(0) };
+        assert_eq!(driver.change(&gone), Err(ChangeError::UnknownBody(BodyId(0))));
+        let velocity =
+            Change::SetVelocity { body: BodyId(1), velocity: Vec3::Z, angular_velocity: Vec3::ZERO };
+        assert_eq!(driver.change(&velocity), Ok(()));
+        assert_eq!(driver.add(ball().at(Vec3::X * 8.0)), Ok(BodyId(2)));
+        assert_eq!(driver.names(), [1, 2].map(BodyId));
+        let snapshot = driver.picture().snapshot;
+        assert_eq!(snapshot.bodies_at(Frame(0)).collect::<Vec<_>>(), [1, 2].map(BodyId));
+        assert_eq!(snapshot.state(BodyId(1), Frame(0)).map(|state| state.velocity), Some(Vec3::Z));
+        // A world of which it is not known how its bodies were made is brought to a timeline all the same.
+        let mut worldly = coupled(&clock);
+        worldly.change(&Change::SetGravityScale { body: BodyId(0), scale: 2.0 }).expect("it is there");
+        let timeline = worldly.timeline(TimelineSettings::default()).expect("plain states");
+        let (is, was) = (timeline.body_at(BodyId(0), Frame(0)).expect("there"), &worldly.world().bodies()[0]);
+        assert_eq!((is.gravity_scale, is.frame), (2.0, was.frame));
+        assert!((is.inverse_mass / was.inverse_mass - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn after_a_pause_time_goes_on_where_it_stood_and_stages_are_measured() {
+        let clock = Clock::by_hand();
+        let mut driver = coupled(&clock).with_stage_times();
+        driver.show();
+        clock.turn(Duration::from_millis(20));
+        driver.show();
+        assert_eq!(driver.stage_times().number, 1);
+        driver.pause();
+        clock.turn(Duration::from_secs(60));
+        driver.show();
+        assert!((driver.time_s() - 0.02).abs() < 1e-9);
+        clock.turn(Duration::from_millis(30));
+        driver.show();
+        assert!((driver.time_s() - 0.05).abs() < 1e-9);
+        assert!((driver.picture().wished_s - 0.05).abs() < 1e-9);
+        // A hand-turned clock stands during a step.
+        assert_eq!((driver.stage_times().number, driver.stage_times().total_s()), (2, 0.0));
+    }
 }

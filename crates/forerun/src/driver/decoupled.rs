@@ -322,6 +322,8 @@ impl Drop for Decoupled {
 #[cfg(test)]
 mod order_tests;
 mod orders;
+#[cfg(test)]
+mod question_tests;
 mod questions;
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "times are kept to the bit where nothing is late")]

@@ -156,6 +156,14 @@ impl Inquiry {
         Ok(answered)
     }
 
+    /// Ends the thread as a panic would.
+    #[cfg(test)]
+    pub(in crate::driver) fn kill(&self, message: &str) {
+        *self.desk.panic.lock().unwrap_or_else(PoisonError::into_inner) = Some(message.to_owned());
+        self.desk.stopping.store(true, Ordering::Relaxed);
+        self.desk.wake();
+    }
+
     fn alive(&self) -> Result<(), DriverError> {
         if !self.thread.as_ref().is_some_and(JoinHandle::is_finished) {
             return Ok(());
