@@ -7,9 +7,13 @@ use forerun::{Decoupled, Scene};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
+#[cfg(target_arch = "wasm32")]
+mod web;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{Host, Starting};
+pub use native::{Host, Link, Starting};
+#[cfg(target_arch = "wasm32")]
+pub use web::{Host, Link, Starting};
 
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,4 +61,6 @@ pub struct Started {
     pub scene: Scene,
     /// The display's handle on the physics.
     pub driver: Decoupled,
+    /// The way to the physics, where that is elsewhere.
+    pub link: Link,
 }

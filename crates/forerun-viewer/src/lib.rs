@@ -12,14 +12,18 @@ pub mod draw;
 pub mod hands;
 pub mod host;
 pub mod input;
+#[cfg(target_arch = "wasm32")]
+pub mod page;
 pub mod panels;
 pub mod report;
 pub mod session;
 pub mod tessellate;
 pub mod view;
 pub mod viewer;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod window;
 
 pub use host::SceneSource;
 pub use viewer::Viewer;
+#[cfg(not(target_arch = "wasm32"))]
 pub use window::{NoWindow, WindowOptions, open};

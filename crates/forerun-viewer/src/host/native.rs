@@ -23,6 +23,20 @@ pub struct Starting {
     started: Receiver<Result<Started, String>>,
 }
 
+/// The way to the physics: there is none, as the two share memory.
+#[derive(Debug)]
+pub struct Link;
+
+impl Link {
+    /// Carries what was said on both sides since the last call: nothing here.
+    ///
+    /// # Errors
+    /// None here.
+    pub fn carry(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
 impl Host {
     /// Begins to start a scene.
     #[must_use]
@@ -62,5 +76,5 @@ fn start(source: &SceneSource, baking: MeshBaking) -> Result<Started, String> {
     let threads = Threads::all().map_err(|error| error.to_string())?;
     let settings = DecoupledSettings { count_areas: true, ..DecoupledSettings::new(threads) };
     let driver = Decoupled::start(timeline, settings).map_err(|error| error.to_string())?;
-    Ok(Started { scene, driver })
+    Ok(Started { scene, driver, link: Link })
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use forerun::{Aabb, Body, BodyId, Change, Decoupled, DriverError, Picture, Sample, Scene, Vec3};
 
 use super::Selection;
-use crate::host::Started;
+use crate::host::{Link, Started};
 
 /// How fast a rewind goes, against the clock.
 const REWIND_SPEED: f64 = 1.0;
@@ -17,6 +17,8 @@ pub struct Play {
     pub scene: Scene,
     /// The display's handle on the physics.
     pub driver: Decoupled,
+    /// The way to the physics.
+    link: Link,
     /// What was shown last.
     pub picture: Picture,
     /// The bodies as they are drawn, by id.
@@ -41,6 +43,7 @@ impl Play {
         Play {
             scene: started.scene,
             driver: started.driver,
+            link: started.link,
             picture,
             samples: Vec::new(),
             selection: Selection::default(),
@@ -54,6 +57,7 @@ impl Play {
 
     /// Takes the picture for a time of the window's clock (seconds).
     pub(super) fn show(&mut self, real_s: f64) -> Result<(), String> {
+        self.link.carry()?;
         if self.rewinding {
             let back = REWIND_SPEED * self.speed * (real_s - self.real_s).max(0.0);
             let asked = self.picture.time_s - back;
@@ -62,6 +66,7 @@ impl Play {
         }
         self.real_s = real_s;
         self.picture = self.driver.show(real_s).map_err(|error| error.to_string())?;
+        self.link.carry()?;
         self.driver.sample_all(&self.picture, &mut self.samples);
         for refusal in self.driver.refusals() {
             self.notice = Some(format!("{refusal:?}"));
