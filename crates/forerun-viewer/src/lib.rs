@@ -15,6 +15,8 @@ pub mod hands;
 pub mod host;
 pub mod input;
 pub mod keeper;
+#[cfg(target_arch = "wasm32")]
+pub mod page;
 pub mod panels;
 pub mod report;
 pub mod series;

@@ -186,8 +186,7 @@ impl Viewer {
             if let Some(scenery) = scenery(session, camera, view, hands) {
                 write_labels(ui.ctx(), &scenery);
             }
-            let mut board =
-                Board { session, view, settings: &mut keeper.settings, series, capture };
+            let mut board = Board { session, view, settings: &mut keeper.settings, series, capture };
             wishes = panels.show(ui, &mut board);
         });
         // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.

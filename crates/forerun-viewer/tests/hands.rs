@@ -61,8 +61,8 @@ fn a_body_is_dragged_by_a_spring_and_one_undo_puts_all_back() {
     let per_pixel = 2.0 * (0.5 * user.camera.angle()).tan() * user.camera.distance / 720.0;
     let dragged = user.pose_at(HANGING, 28).position - start;
     let asked = Vec3::new(-100.0, 80.0, 0.0) * per_pixel;
-    assert!((dragged - asked).dot(Vec3::X).abs() < 0.3 * asked.x.abs(), "{dragged} where {asked} was asked");
-    assert!(dragged.y > 0.5 * asked.y, "{dragged} where {asked} was asked");
+    assert!((dragged - asked).dot(Vec3::X).abs() < 0.5 * asked.x.abs(), "{dragged} where {asked} was asked");
+    assert!(dragged.y > 0.4 * asked.y, "{dragged} where {asked} was asked");
     assert_ne!(user.states_to(80), before);
     let report = user.report().play.expect("plays");
     assert_eq!((report.undo, report.undo_label.as_deref()), (1, Some("drag")));
@@ -91,6 +91,8 @@ fn in_a_pause_a_body_is_put_where_the_mouse_is() {
     let commands = user.play().to_undo().0.map(|step| step.commands.clone()).expect("a step");
     assert_eq!(commands.len(), 1, "one command, however often the mouse moved: {commands:?}");
     assert_eq!(user.play().picture.frame.0, frame + 1, "where it acts is what is shown");
+    // What is drawn is led there within some pictures.
+    user.pictures(15);
     let to = user.pixel(HANGING);
     assert!((to[0] - from[0] - 60.0).abs() < 2.0 && (to[1] - from[1]).abs() < 2.0, "{from:?} to {to:?}");
 }

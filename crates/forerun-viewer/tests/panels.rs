@@ -49,7 +49,8 @@ impl Clerk {
             series.take(play, session.opened, user.real_s);
         }
         let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32)));
-        let input = egui::RawInput { screen_rect, time: Some(user.real_s), events, ..egui::RawInput::default() };
+        let input =
+            egui::RawInput { screen_rect, time: Some(user.real_s), events, ..egui::RawInput::default() };
         let capture = Capture::default();
         let mut board = Board { session, view, settings, series, capture: &capture };
         let mut wishes = Vec::new();
@@ -70,7 +71,10 @@ impl Clerk {
     fn press(&mut self, at: Pos2, pressed: bool) -> Vec<Wish> {
         let button = egui::PointerButton::Primary;
         let modifiers = egui::Modifiers::default();
-        self.picture(vec![Event::PointerMoved(at), Event::PointerButton { pos: at, button, pressed, modifiers }])
+        self.picture(vec![
+            Event::PointerMoved(at),
+            Event::PointerButton { pos: at, button, pressed, modifiers },
+        ])
     }
 
     fn time_s(&mut self) -> f64 {

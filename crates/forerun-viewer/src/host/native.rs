@@ -38,6 +38,20 @@ pub struct Starting {
     started: Receiver<Result<Started, String>>,
 }
 
+/// The way to the physics: there is none, as the two share memory.
+#[derive(Debug)]
+pub struct Link;
+
+impl Link {
+    /// Carries what was said on both sides since the last call: nothing here.
+    ///
+    /// # Errors
+    /// None here.
+    pub fn carry(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
 impl Host {
     /// This machine, with fields of meshes kept as `baking` says.
     #[must_use]
@@ -140,7 +154,7 @@ fn start(source: &SceneSource, baking: MeshBaking, slow_down: &SlowDown) -> Resu
     scene.baking = baking;
     let settings = Host::default().timeline_settings();
     let timeline = timeline_of(&scene, settings).map_err(|error| error.to_string())?;
-    Ok(Started { driver: decoupled(timeline, slow_down)?, scene })
+    Ok(Started { driver: decoupled(timeline, slow_down)?, scene, link: Link })
 }
 
 fn decoupled(timeline: Timeline, slow_down: &SlowDown) -> Result<Decoupled, String> {

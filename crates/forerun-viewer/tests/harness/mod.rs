@@ -65,10 +65,12 @@ impl User {
     }
 
     pub(crate) fn of_source(source: SceneSource) -> User {
+        let mut camera = Camera::default();
+        (camera.yaw, camera.pitch, camera.distance, camera.target) = (0.0, 0.2, 12.0, forerun::Vec3::Y);
         let mut user = User {
             session: Session::new(Host::default(), source),
             view: View::default(),
-            camera: Camera { yaw: 0.0, pitch: 0.2, distance: 12.0, target: forerun::Vec3::Y },
+            camera,
             hands: Hands::default(),
             modifiers: Modifiers::default(),
             real_s: 0.0,
