@@ -180,10 +180,10 @@ impl Shortcut {
     #[must_use]
     pub fn keys(&self) -> String {
         let key = match self.key {
-            Key::ArrowRight => "→".to_owned(),
-            Key::ArrowLeft => "←".to_owned(),
-            Key::ArrowUp => "↑".to_owned(),
-            Key::ArrowDown => "↓".to_owned(),
+            Key::ArrowRight => "Right".to_owned(),
+            Key::ArrowLeft => "Left".to_owned(),
+            Key::ArrowUp => "Up".to_owned(),
+            Key::ArrowDown => "Down".to_owned(),
             Key::Escape => "Esc".to_owned(),
             Key::Equals => "=".to_owned(),
             Key::Plus => "+".to_owned(),

@@ -27,6 +27,15 @@ pub enum Want {
     Hand,
 }
 
+/// Which half of a picture is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawn {
+    /// The scene, but no panels yet.
+    Scene,
+    /// All of it.
+    All,
+}
+
 /// Pictures that are to be kept, those that are being written, and the film that is being taken.
 #[derive(Debug, Default)]
 pub struct Capture {
@@ -42,9 +51,9 @@ pub struct Capture {
 }
 
 impl Capture {
-    /// Takes those of the wanted pictures that are taken before (`Bare`) or after the panels are drawn.
-    pub fn take(&mut self, bare: bool, pixels_per_point: f32, session: &Session, read: impl Fn() -> Shot) {
-        let due = |want: &Want| (*want == Want::Bare) == bare;
+    /// Takes those of the wanted pictures that can be taken of what is drawn by now.
+    pub fn take(&mut self, drawn: Drawn, pixels_per_point: f32, session: &Session, read: impl Fn() -> Shot) {
+        let due = |want: &Want| (*want == Want::Bare) == (drawn == Drawn::Scene);
         if !self.wants.iter().any(due) {
             return;
         }

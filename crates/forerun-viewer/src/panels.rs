@@ -61,6 +61,8 @@ pub struct Panels {
     plots: plots::Plots,
     messages: messages::Messages,
     dressed: bool,
+    /// What they left of the window in the last picture. Points.
+    free: Option<egui::Rect>,
 }
 
 impl Panels {
@@ -84,6 +86,7 @@ impl Panels {
         }
         tools::show(ui, board.session, board.view, &mut wishes);
         inspector::show(ui, board.session, board.view);
+        self.free = Some(ui.available_rect_before_wrap());
         legend::show(ui, board);
         self.scenes.show(ui.ctx(), &mut wishes);
         self.files.show(ui.ctx(), &board.settings.recent, &mut wishes);
@@ -101,6 +104,14 @@ impl Panels {
         let place = self.strip.show(ui, play, scene, palette);
         board.session.strip = Some(place);
         ui.add_space(2.0);
+    }
+
+    /// How much of the window's width or height they left in the last picture, whichever is less: 0 to 1.
+    #[must_use]
+    pub fn left_free(&self, ctx: &egui::Context) -> f32 {
+        let window = ctx.content_rect().size();
+        let free = self.free.map_or(window, |free| free.size());
+        (free.x / window.x).min(free.y / window.y).clamp(0.2, 1.0)
     }
 
     /// Asks for a scene file.

@@ -6,7 +6,7 @@ use three_d::{Context, Event, FrameInput, FrameOutput, GUI};
 
 use crate::actions::Action;
 use crate::camera::Camera;
-use crate::capture::{Capture, Want};
+use crate::capture::{Capture, Drawn, Want};
 use crate::desk::{Desk, keys_of};
 use crate::draw::{Painter, Scenery, needs_inspection, write_labels};
 use crate::hands::{Hands, take_flight};
@@ -206,6 +206,8 @@ impl Viewer {
         if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {
             self.perform(Action::FrameAll);
             self.camera.arrive();
+            // All of it between the panels.
+            self.camera.zoom(1.0 / self.panels.left_free(self.gui.context()));
             self.framed = opened;
         }
     }
@@ -217,10 +219,10 @@ impl Viewer {
         } else {
             target.clear(three_d::ClearState::color_and_depth(0.2, 0.22, 0.25, 1.0, 1.0));
         }
-        self.keep_picture(&target, true);
+        self.keep_picture(&target, Drawn::Scene);
         // Only a panic in the library could make this fail.
         let _ = target.write(|| self.gui.render());
-        self.keep_picture(&target, false);
+        self.keep_picture(&target, Drawn::All);
     }
 }
 

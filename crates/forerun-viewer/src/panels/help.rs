@@ -10,7 +10,7 @@ use crate::view::View;
 /// What the mouse does, and where.
 pub(super) const MOUSE: &[(&str, &str)] = &[
     ("Left: click", "pick a body; with Shift or Ctrl one more"),
-    ("Left: drag a body", "pull it by a spring; with Shift along the ground"),
+    ("Left: drag a body", "pull it; with Shift along the ground"),
     ("Left, tool throw", "hold to aim, let go to throw; Esc: nothing"),
     ("Left, tool push", "push the body away"),
     ("Left beside bodies, right: drag", "turn round the scene"),
@@ -29,6 +29,7 @@ pub(super) fn show(ctx: &egui::Context, view: &mut View) {
         .open(&mut view.open.help)
         .collapsible(false)
         .resizable(false)
+        .default_width(1120.0)
         .pivot(Align2::CENTER_CENTER)
         .default_pos(room.center())
         .show(ctx, |ui| {

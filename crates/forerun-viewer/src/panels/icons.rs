@@ -1,8 +1,6 @@
 //! Icons of buttons, painted: fonts have them or have not.
 
-use three_d::egui::{
-    self, Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2,
-};
+use three_d::egui::{self, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 
 use crate::actions::Action;
 
@@ -35,21 +33,31 @@ pub(super) enum Icon {
 const SIDE: f32 = 24.0;
 
 /// A button with an icon; its tooltip tells what it does and by which keys.
-pub(super) fn button(ui: &mut Ui, icon: Icon, action: Action, on: bool, tip: &str) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIDE), Sense::click());
-    let visuals = ui.style().interact_selectable(&response, on);
-    if on || response.hovered() || response.has_focus() {
-        ui.painter().rect(
-            rect,
-            visuals.corner_radius,
-            visuals.bg_fill,
-            visuals.bg_stroke,
-            egui::StrokeKind::Inside,
-        );
+pub(super) struct IconButton<'a> {
+    /// What it shows.
+    pub(super) icon: Icon,
+    /// What it asks for.
+    pub(super) action: Action,
+    /// Whether it is down.
+    pub(super) on: bool,
+    /// What it does, in words.
+    pub(super) tip: &'a str,
+}
+
+impl IconButton<'_> {
+    /// Shows it; whether it was clicked.
+    pub(super) fn show(self, ui: &mut Ui) -> bool {
+        let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIDE), Sense::click());
+        let visuals = ui.style().interact_selectable(&response, self.on);
+        if self.on || response.hovered() || response.has_focus() {
+            let (radius, fill, edge) = (visuals.corner_radius, visuals.bg_fill, visuals.bg_stroke);
+            ui.painter().rect(rect, radius, fill, edge, egui::StrokeKind::Inside);
+        }
+        paint(ui.painter(), self.icon, rect.shrink(6.0), visuals.fg_stroke.color);
+        let label = || egui::WidgetInfo::labeled(egui::WidgetType::Button, true, self.tip);
+        response.widget_info(label);
+        response.on_hover_text(tip_of(self.action, self.tip)).clicked()
     }
-    paint(ui.painter(), icon, rect.shrink(6.0), visuals.fg_stroke.color);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, tip));
-    response.on_hover_text(tip_of(action, tip))
 }
 
 /// A tooltip with the keys behind it.

@@ -12,6 +12,8 @@ use crate::capture::Want;
 
 /// How much of the past is shown. Seconds.
 const SPANS_S: [f64; 4] = [5.0, 15.0, 30.0, 60.0];
+/// Of a plot's height, its title and the bar that scrolls. Points.
+const TITLE: f32 = 30.0;
 /// Narrower plots cannot be read. Points.
 const WIDTH_MIN: f32 = 220.0;
 
@@ -60,7 +62,7 @@ impl Plots {
                         ui.set_width(width);
                         ui.label(egui::RichText::new(kind.title()).strong().size(12.0))
                             .on_hover_text(kind.meaning());
-                        let size = egui::vec2(width, ui.available_height());
+                        let size = egui::vec2(width, (room.y - TITLE).max(60.0));
                         curves::show(ui, *kind, board.series, end_s - self.span_s..=end_s, (size, palette));
                     });
                 }

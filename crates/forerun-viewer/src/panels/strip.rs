@@ -49,7 +49,7 @@ impl Strip {
         if !play.paused {
             self.zoom.follow(kept);
         }
-        let x = rect.shrink2(vec2(8.0, 0.0)).x_range();
+        let x = rect.shrink2(vec2(18.0, 0.0)).x_range();
         self.take_wheel(ui, &response, kept, self.zoom.scale(kept, x));
         let scale = self.zoom.scale(kept, x);
         let lanes = Lanes {

@@ -3,7 +3,7 @@
 use three_d::egui::containers::menu::{MenuButton, MenuConfig};
 use three_d::egui::{self, Button, PopupCloseBehavior, Slider, Ui};
 
-use super::icons::{self, Icon};
+use super::icons::{self, Icon, IconButton};
 use super::palette::Palette;
 use super::{Board, Wish};
 use crate::actions::Action;
@@ -20,8 +20,9 @@ pub(super) fn show(ui: &mut Ui, board: &mut Board<'_>, palette: &Palette, wishes
         lasting(ui, "Capture", |ui| capture(ui, board, wishes));
         ui.menu_button("Help", |ui| item(ui, wishes, Action::Help, "Keys and mouse"));
         ui.separator();
-        let camera = icons::button(ui, Icon::Camera, Action::Screenshot, false, "Screenshot");
-        if camera.clicked() {
+        let camera =
+            IconButton { icon: Icon::Camera, action: Action::Screenshot, on: false, tip: "Screenshot" };
+        if camera.show(ui) {
             wishes.push(Wish::Do(Action::Screenshot));
         }
         film_button(ui, board, palette, wishes);
@@ -199,8 +200,7 @@ fn film_button(ui: &mut Ui, board: &Board<'_>, palette: &Palette, wishes: &mut V
     let film = board.capture.film.as_ref();
     let (icon, tip) =
         if film.is_some() { (Icon::Stop, "End the film") } else { (Icon::Record, "Start a film") };
-    let button = icons::button(ui, icon, Action::Film, film.is_some(), tip);
-    if button.clicked() {
+    if (IconButton { icon, action: Action::Film, on: film.is_some(), tip }).show(ui) {
         wishes.push(Wish::Do(Action::Film));
     }
     if let Some(film) = film {

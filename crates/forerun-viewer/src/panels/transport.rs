@@ -3,7 +3,7 @@
 use three_d::egui::{self, RichText, Ui};
 
 use super::Wish;
-use super::icons::{self, Icon};
+use super::icons::{Icon, IconButton};
 use super::palette::Palette;
 use crate::actions::Action;
 use crate::session::Play;
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, play: &mut Play, palette: &Palette, wishes: &mut
 fn buttons(ui: &mut Ui, play: &Play, wishes: &mut Vec<Wish>) {
     ui.spacing_mut().item_spacing.x = 2.0;
     let mut put = |ui: &mut Ui, icon, action, on, tip| {
-        if icons::button(ui, icon, action, on, tip).clicked() {
+        if (IconButton { icon, action, on, tip }).show(ui) {
             wishes.push(Wish::Do(action));
         }
     };
@@ -80,6 +80,11 @@ fn speeds(ui: &mut Ui, play: &mut Play) {
 
 fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
     let picture = &play.picture;
+    if let Some(coupled) = play.coupled() {
+        let tip = "The traditional driver: each picture waits for its step.";
+        ui.label(format!("coupled, step {:.1} ms", coupled.step_s() * 1e3)).on_hover_text(tip);
+        return;
+    }
     let snapshot = &picture.snapshot;
     let ahead = snapshot.valid_to().since(picture.frame);
     let full = u64::from(forerun::TimelineSettings::default().lookahead);

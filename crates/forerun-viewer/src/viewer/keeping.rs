@@ -3,7 +3,7 @@
 use three_d::{DepthTexture2D, Interpolation, RenderTarget, Texture2D, Viewport, Wrapping};
 
 use super::{Viewer, scenery};
-use crate::capture::{self, FilmSize, Shot};
+use crate::capture::{self, Drawn, FilmSize, Shot};
 use crate::series;
 
 impl Viewer {
@@ -17,14 +17,14 @@ impl Viewer {
         self.clock_s += goes_on_s;
     }
 
-    /// Keeps of this picture what is wanted: before (`bare`) or after the panels are drawn.
-    pub(super) fn keep_picture(&mut self, window: &RenderTarget<'_>, bare: bool) {
+    /// Keeps of this picture what is wanted, as far as it is drawn.
+    pub(super) fn keep_picture(&mut self, window: &RenderTarget<'_>, drawn: Drawn) {
         let scale = self.window.pixels_per_point * self.view.scale;
-        self.capture.take(bare, scale, &self.session, || Shot::of(window));
+        self.capture.take(drawn, scale, &self.session, || Shot::of(window));
         let Some(film) = self.capture.film.as_ref().filter(|_| self.filmed) else { return };
         let settings = film.settings;
         let with_panels = settings.panels && settings.size == FilmSize::Window;
-        if bare == with_panels {
+        if with_panels != (drawn == Drawn::All) {
             return;
         }
         let shot = match settings.size.pixels() {
