@@ -178,12 +178,12 @@ fn capture(ui: &mut Ui, board: &mut Board<'_>, wishes: &mut Vec<Wish>) {
     item(ui, wishes, Action::Film, if filming { "End the film" } else { "Start a film" });
     let film = &mut board.settings.film;
     ui.add_enabled_ui(!filming, |ui| {
-        egui::ComboBox::from_label("becomes").selected_text(film.format.name()).show_ui(ui, |ui| {
+        labelled(ui, "Film as", film.format.name(), |ui| {
             FilmFormat::ALL.into_iter().for_each(|format| {
                 ui.selectable_value(&mut film.format, format, format.name());
             });
         });
-        egui::ComboBox::from_label("size").selected_text(film.size.name()).show_ui(ui, |ui| {
+        labelled(ui, "Size", film.size.name(), |ui| {
             FilmSize::ALL.into_iter().for_each(|size| {
                 ui.selectable_value(&mut film.size, size, size.name());
             });
@@ -194,6 +194,14 @@ fn capture(ui: &mut Ui, board: &mut Board<'_>, wishes: &mut Vec<Wish>) {
     });
     ui.separator();
     ui.weak("Files go to the folder that the viewer was started in.");
+}
+
+/// A choice with its name before it.
+fn labelled(ui: &mut Ui, name: &str, chosen: &str, choices: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        ui.label(name);
+        egui::ComboBox::from_id_salt(name).selected_text(chosen).show_ui(ui, choices);
+    });
 }
 
 fn film_button(ui: &mut Ui, board: &Board<'_>, palette: &Palette, wishes: &mut Vec<Wish>) {
