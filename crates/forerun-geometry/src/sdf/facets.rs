@@ -81,7 +81,7 @@ impl Facets {
         let row_of = |lane: usize| eights[which[lane] as usize][lane];
         let mut best = 0;
         for lane in 1..LANES {
-            let is_first = least[lane] == least[best] && row_of(lane) < row_of(best);
+            let is_first = least[lane] <= least[best] && row_of(lane) < row_of(best);
             best = if least[lane] < least[best] || is_first { lane } else { best };
         }
         self.seen(row_of(best) / ROWS, point)
@@ -122,7 +122,7 @@ impl Facets {
         if y >= 0.0 && ex * y - cy * px >= 0.0 && cy * x - cx * y >= 0.0 {
             return Seen { triangle, feature: Feature::Face, offset: n * z };
         }
-        let part = |along: f32| along.max(0.0).min(1.0);
+        let part = |along: f32| along.clamp(0.0, 1.0);
         let (on_bc, on_ac) = (part((px * ex + y * cy) * by_bc), part((x * cx + y * cy) * by_ac));
         let on_ab = x.max(0.0).min(length);
         // By edge: the offset in the plane, and where on the edge from which corner to which.

@@ -92,8 +92,8 @@ impl Ridges {
     pub(crate) fn run(&self, first: usize) -> ([u32; LANES], u32) {
         let count = self.rows.len() / ROWS;
         let mut which = [0; LANES];
-        for i in 0..LANES {
-            which[i] = (first + i).min(count - 1) as u32;
+        for (i, which) in which.iter_mut().enumerate() {
+            *which = (first + i).min(count - 1) as u32;
         }
         (which, (1_u32 << (count - first).min(LANES)) - 1)
     }

@@ -8,33 +8,25 @@
 //! Limit: of several places where one stretch touches the other shape one is found. Stretches are no longer than their
 //! shape is thick, and the other shape has points and stretches of its own there.
 
-use forerun_lanes::{LANES, LaneMask, Lanes, Portable, Row, V8, cells, dispatched};
+use forerun_lanes::{LANES, LaneMask, Lanes, Portable, Row, V8, dispatched};
 
 use super::candidates::{Block, Candidates};
+use super::course::{Course, Place, Stretches};
 use super::directions::Direction;
 use super::look_up::{Eight, Query};
 use super::sharp::Answer;
 use crate::Vec3;
 use crate::sdf::eight::transformed;
 use crate::sdf::primitive::{LookUp, Surface};
-use crate::sdf::ridges::EightRidges;
 
 /// How often slopes are followed.
 const STEPS: u32 = 3;
-/// Slopes below this are level: the edge lies on the surface there.
-const LEVEL: f32 = 1e-3;
 /// Places are lower than others by this much at least. Metres.
 const LOWER: f32 = 1e-4;
 /// Sides are too far apart for an edge to be between them where the mean of their normals is shorter than this.
 const CROSSING_MIN: f32 = 0.5;
 /// Places this near to the surface are on it. Metres.
 const ON_SURFACE: f32 = 1e-5;
-/// Part of a stretch next to its ends, which are points already.
-const END_PART: f32 = 1e-3;
-/// How far behind the rim of a side the points are where an edge has come to lie on it, at least. Metres.
-const INSIDE: f32 = 1e-3;
-/// How much farther, for each metre that they are deep or high, so that the side is nearer to them than the one next to it.
-const INSIDE_PER_DEPTH: f32 = 1.5;
 
 /// The memory of a search.
 #[derive(Clone, Debug, Default)]
@@ -218,146 +210,6 @@ pub(super) struct Crossings {
     pub(super) known: u32,
     pub(super) distance: Portable,
     pub(super) normal: V8<Portable>,
-}
-
-/// A place on each of eight stretches.
-#[derive(Clone, Copy)]
-struct Place<F> {
-    /// From the beginning of the stretch. Metres.
-    at: F,
-    /// To the surface. Metres.
-    distance: F,
-    /// Of the distance, along the stretch.
-    slope: F,
-    /// Of the distance; its direction is that of the way out.
-    gradient: V8<F>,
-}
-
-impl<F: Lanes> Place<F> {
-    /// What was written in rows.
-    #[inline(always)]
-    fn of(rows: &[Row], which: &[u32; LANES]) -> Self {
-        let [at, distance, slope, x, y, z, ..] = F::gather(rows, which);
-        Place { at, distance, slope, gradient: V8 { x, y, z } }
-    }
-
-    #[inline(always)]
-    fn write(&self, rows: &mut [Row; LANES]) {
-        let (zero, g) = (F::zero(), self.gradient);
-        let index = std::array::from_fn(|i| i as u32);
-        F::scatter(cells(rows), &index, [self.at, self.distance, self.slope, g.x, g.y, g.z, zero, zero]);
-    }
-
-    /// The bits of those from which the distance falls into the stretch; `way` is 1 from its beginning and -1 from its end.
-    #[inline(always)]
-    fn falls(&self, way: f32) -> u32 {
-        (self.slope * F::splat(way)).lt(F::splat(-LEVEL)).bits()
-    }
-
-    /// Takes another place where a bit is set.
-    #[inline(always)]
-    fn take(&mut self, other: &Self, bits: u32) {
-        let taken = F::Mask::from_bits(bits);
-        self.at = taken.select(other.at, self.at);
-        self.distance = taken.select(other.distance, self.distance);
-        self.slope = taken.select(other.slope, self.slope);
-        self.gradient = taken.select_v(other.gradient, self.gradient);
-    }
-
-    /// Where the tangents of two places meet; halfway where they do not.
-    #[inline(always)]
-    fn meets(&self, other: &Self) -> F {
-        let turn = other.slope - self.slope;
-        let rise = other.distance - self.distance - other.slope * (other.at - self.at);
-        let half = F::splat(0.5) * (self.at + other.at);
-        let at = turn.gt(F::splat(LEVEL)).select(self.at - rise / turn, half);
-        at.max(self.at).min(other.at)
-    }
-}
-
-/// Eight stretches of edges in the field's frame.
-struct Stretches<F> {
-    from: V8<F>,
-    /// Unit.
-    along: V8<F>,
-    /// Metres.
-    length: F,
-}
-
-impl<F: Lanes> Stretches<F> {
-    #[inline(always)]
-    fn new(direction: &Direction, ridges: &EightRidges<F>) -> Self {
-        let from = transformed(ridges.from, &direction.axes, direction.origin);
-        let way = transformed(ridges.to, &direction.axes, direction.origin) - from;
-        let length = way.length();
-        Stretches { from, along: way * (F::one() / length), length }
-    }
-
-    /// The points that are so far from the beginning. Metres.
-    #[inline(always)]
-    fn at(&self, at: F) -> V8<F> {
-        self.from + self.along * at
-    }
-
-    /// The bits of the places that are not ends.
-    #[inline(always)]
-    fn are_between(&self, at: F) -> u32 {
-        let (first, last) = (F::splat(END_PART) * self.length, F::splat(1.0 - END_PART) * self.length);
-        (first.lt(at) & at.lt(last)).bits()
-    }
-}
-
-/// What is known of where eight stretches touch.
-struct Course<F> {
-    /// What is left of them on both sides of the lowest places.
-    ends: [Place<F>; 2],
-    /// Where they are lowest, as far as is known.
-    lowest: Place<F>,
-    /// The bits of those that are not to be followed further.
-    settled: u32,
-}
-
-impl<F: Lanes> Course<F> {
-    /// Of the stretches whose bits are set; both ends of each of them follow each other in the rows.
-    #[inline(always)]
-    fn new(rows: &[Row], bits: u32) -> Self {
-        let last = 31 - bits.leading_zeros();
-        let (mut first, mut second) = ([0; LANES], [0; LANES]);
-        for i in 0..LANES as u32 {
-            (first[i as usize], second[i as usize]) = (2 * i.min(last), 2 * i.min(last) + 1);
-        }
-        let ends = [Place::<F>::of(rows, &first), Place::of(rows, &second)];
-        let mut lowest = ends[0];
-        lowest.take(&ends[1], ends[0].falls(1.0));
-        Course { ends, lowest, settled: !bits }
-    }
-
-    /// Where the edges come to lie on what they touch, as far as one end tells.
-    #[inline(always)]
-    fn comes_to_lie(&self, end: usize) -> F {
-        let (level, end) = (Place { slope: F::zero(), ..self.lowest }, self.ends[end]);
-        let is_before = end.at.lt(level.at).bits();
-        let (mut first, mut second) = (level, end);
-        first.take(&end, is_before);
-        second.take(&level, is_before);
-        first.meets(&second)
-    }
-
-    /// Places a little behind those.
-    #[inline(always)]
-    fn lies(&self, end: usize) -> F {
-        let at = self.comes_to_lie(end);
-        let run = self.lowest.at - at;
-        let slope = self.ends[end].slope.abs().max(F::splat(LEVEL));
-        let step = (self.inside() / slope).min(F::splat(0.5) * run.abs());
-        at + run.lt(F::zero()).select(-step, step)
-    }
-
-    /// How far one must go from the rim of a side to be sure to see it.
-    #[inline(always)]
-    fn inside(&self) -> F {
-        F::splat(INSIDE) + F::splat(INSIDE_PER_DEPTH) * self.lowest.distance.abs()
-    }
 }
 
 impl Direction<'_> {
