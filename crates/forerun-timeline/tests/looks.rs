@@ -72,7 +72,7 @@ fn areas_have_the_bodies_that_visit_them_and_clocks_that_commands_set_back() {
         });
         let here = here.expect("it is somewhere");
         assert_eq!(here.bounds.max - here.bounds.min, Vec3::splat(2.0));
-        assert_eq!(here.area.map(|c| 2.0 * c as f32), here.bounds.min.to_array());
+        assert_eq!(Vec3::from_array(here.area.map(|c| 2.0 * c as f32)), here.bounds.min);
         // The one that lies, and has come to rest, is not active; the one that falls is.
         assert_eq!(here.active, body == 2, "{here:?}");
     }
