@@ -131,7 +131,8 @@ fn commands_that_are_no_longer_kept_are_forgotten_by_later_snapshots() {
     let settings = TimelineSettings { lookahead: 60, past: 5, ..TimelineSettings::default() };
     let mut timeline =
         Timeline::new(&scenes::all().swap_remove(0).1, Environment::default(), settings).unwrap();
-    for frame in [3, 9] {
+    // Commands act after the oldest frame, which is 7 once frame 12 is shown.
+    for frame in [7, 9] {
         timeline.change(Frame(frame), push(4, 100.0)).unwrap();
     }
     run(&mut timeline);
@@ -141,7 +142,7 @@ fn commands_that_are_no_longer_kept_are_forgotten_by_later_snapshots() {
     let frames = |snapshot: &forerun_timeline::Snapshot| -> Vec<u64> {
         snapshot.commands().map(|(key, _)| key.frame.0).collect()
     };
-    assert_eq!((frames(&before), frames(&timeline.snapshot())), (vec![3, 9], vec![9]));
+    assert_eq!((frames(&before), frames(&timeline.snapshot())), (vec![7, 9], vec![9]));
 }
 
 fn previewed(timeline: &Timeline, preview: Preview) -> Result<Previewed, CommandError> {
