@@ -32,7 +32,7 @@ const AWAKE: Rgb = [226, 112, 66];
 const IDLE_AREA: Rgb = [96, 120, 158];
 const ACTIVE_AREA: Rgb = [226, 112, 66];
 /// From the least to the most: dark blue, teal, green, yellow (after matplotlib's viridis), and red for too much.
-const RAMP: [Rgb; 5] = [[72, 60, 130], [48, 104, 142], [34, 154, 136], [120, 206, 88], [250, 226, 60]];
+const RAMP: [Rgb; 5] = [[86, 78, 152], [48, 104, 142], [34, 154, 136], [120, 206, 88], [250, 226, 60]];
 /// One slice, two, four, eight and more.
 const SLICES: [Rgb; 4] = [[150, 160, 172], [232, 202, 84], [232, 136, 56], [214, 62, 48]];
 /// Speeds of the legend. m/s.

@@ -22,6 +22,10 @@ const TRAILS_MAX: usize = 64;
 /// So many ghosts of one body are drawn.
 const GHOSTS_MAX: u32 = 20;
 
+/// How opaque things at hand and glass are.
+const HELD: f32 = 0.5;
+const GLASS: f32 = 0.16;
+
 const AIM: Ink = [255, 190, 60, 255];
 const GRAB: Ink = [255, 225, 120, 255];
 const PREVIEW: [u8; 3] = [255, 196, 84];
@@ -107,13 +111,13 @@ impl Ghosts {
         layer.crowd.send();
     }
 
-    /// Draws them over what is there now.
-    pub(super) fn draw(&self, programs: &Programs, eye: &Eye, surfaces: &Surfaces) {
+    /// Draws them over what is there now, and what is of glass.
+    pub(super) fn draw(&self, programs: &Programs, eye: &Eye, (glass, surfaces): (&Crowd, &Surfaces)) {
         let program = &programs.ghost;
         program.use_uniform("viewProjection", eye.view_projection);
         program.use_uniform("eye", super::convert::vector(eye.position));
         let layers = self.layers[..self.used].iter().map(|layer| (&layer.crowd, layer.opacity));
-        for (crowd, opacity) in layers.chain([(&self.held, 0.5)]) {
+        for (crowd, opacity) in layers.chain([(&self.held, HELD), (glass, GLASS)]) {
             if crowd.is_empty() {
                 continue;
             }
