@@ -72,6 +72,18 @@ pub(crate) struct Grid {
     edge_m: f32,
 }
 
+impl Grid {
+    /// Areas of an edge (metres); none where it is not above 0.
+    pub(crate) fn new(edge_m: f32) -> Option<Grid> {
+        (edge_m > 0.0 && edge_m.is_finite()).then_some(Grid { edge_m })
+    }
+
+    /// Edge of an area. Metres.
+    pub(crate) fn edge_m(&self) -> f32 {
+        self.edge_m
+    }
+}
+
 /// All areas with a visitor. A copy shares what neither side has written since.
 #[derive(Clone, Debug)]
 pub(crate) struct Areas {

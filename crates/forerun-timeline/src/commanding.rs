@@ -35,6 +35,13 @@ pub(crate) struct Effect {
     pub(crate) ignored: u32,
 }
 
+impl Effect {
+    /// As far as a display needs to know it.
+    pub(crate) fn shown(arrived: Option<BodyState>) -> Effect {
+        Effect { arrived, ..Effect::default() }
+    }
+}
+
 /// By commanded body.
 pub(crate) type FrameEffects = BTreeMap<BodyId, Effect>;
 

@@ -19,9 +19,9 @@ use crate::stale::same_body;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct History {
     /// How it was made; `None` while it only has a name.
-    def: Option<Arc<BodyDef>>,
+    pub(crate) def: Option<Arc<BodyDef>>,
     /// Sorted by frame; each holds until the next. `None` where the body does not exist.
-    entries: Vec<(Frame, Option<Arc<Body>>)>,
+    pub(crate) entries: Vec<(Frame, Option<Arc<Body>>)>,
 }
 
 impl History {
@@ -34,9 +34,9 @@ impl History {
 /// What every body and gravity are, over frames.
 #[derive(Clone, Debug)]
 pub(crate) struct Definitions {
-    bodies: SharedList<Arc<History>>,
-    /// Sorted by frame; each holds until the next; the first holds from the beginning.
-    environments: Vec<(Frame, Environment)>,
+    pub(crate) bodies: SharedList<Arc<History>>,
+    /// Sorted by frame; each holds until the next; the first holds from the beginning. Never empty.
+    pub(crate) environments: Vec<(Frame, Environment)>,
 }
 
 impl Definitions {
@@ -179,7 +179,7 @@ fn drop_before<T>(entries: &mut Vec<(Frame, T)>, oldest: Frame) {
 }
 
 /// Keeps the old memory of bodies that come out as they were, so that a look at the pointer tells.
-fn share_equal(entries: &mut [(Frame, Option<Arc<Body>>)], old: &[(Frame, Option<Arc<Body>>)]) {
+pub(crate) fn share_equal(entries: &mut [(Frame, Option<Arc<Body>>)], old: &[(Frame, Option<Arc<Body>>)]) {
     for (frame, body) in entries {
         if let Some(before) = in_force(old, *frame)
             && same_body(before.as_ref(), body.as_ref())

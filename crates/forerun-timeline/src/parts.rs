@@ -15,6 +15,7 @@ use crate::command_log::CommandLog;
 use crate::definitions::Definitions;
 use crate::frame_table::{Entry, FrameTable};
 use crate::order::UndoLog;
+use crate::snapshot_delta::BodyTraits;
 use crate::tables::Tables;
 use crate::timeline::area_edge;
 use crate::{Change, Command, CommandKey, Frame, Order, Progress, Stats, Timeline, TimelineSettings};
@@ -323,25 +324,21 @@ fn make(part: &NameParts, environment: &Environment) -> Result<Option<Arc<Body>>
     };
     Body::new(def).map_err(|error| wrong("def", error))?;
     let Some(now) = &part.body else { return Ok(None) };
-    let (made, _) = Body::new(&BodyDef { kind: now.kind, ..BodyDef::clone(def) })
-        .map_err(|error| wrong("body.kind", error))?;
-    let id = BodyId(0);
-    let BodyParts { material, force, torque, gravity_scale, .. } = *now;
-    let mut changes = vec![
-        Change::SetMaterial { body: id, material },
-        Change::SetForce { body: id, force, torque },
-        Change::SetGravityScale { body: id, scale: gravity_scale },
-    ];
-    changes.extend(now.spring.map(|spring| Change::Hold { body: id, spring }));
-    for change in changes {
-        change.check_numbers().map_err(|error| wrong("body", error))?;
-    }
+    let traits = BodyTraits {
+        kind: now.kind,
+        material: now.material,
+        gravity_scale: now.gravity_scale,
+        force: now.force,
+        torque: now.torque,
+        spring: now.spring,
+    };
+    let body = traits.body(def).map_err(|message| wrong("body", message))?;
     check_state(&now.state, environment).map_err(|message| wrong("body.state", message))?;
-    Ok(Some(Arc::new(Body { material, force, torque, gravity_scale, spring: now.spring, ..made })))
+    Ok(Some(Arc::new(body)))
 }
 
 /// What every stored state is: finite, without -0, turned by a unit quaternion, and not longer at rest than there is.
-fn check_state(state: &BodyState, environment: &Environment) -> Result<(), String> {
+pub(crate) fn check_state(state: &BodyState, environment: &Environment) -> Result<(), String> {
     if !(state.is_finite() && state.same_bits(&state.canonical())) {
         return Err("has a number that is not finite, or -0".to_owned());
     }

@@ -78,20 +78,34 @@ impl Tables {
 
     /// Replaces the table at a stored frame.
     pub(crate) fn set(&mut self, frame: Frame, table: Arc<FrameTable>) {
-        let index = self.run_of(frame);
-        if Arc::ptr_eq(&self.runs[index].table, &table) {
+        self.set_run(frame, frame, table);
+    }
+
+    /// Replaces the tables from a stored frame to another, that one too, by one table.
+    pub(crate) fn set_run(&mut self, from: Frame, to: Frame, table: Arc<FrameTable>) {
+        let index = self.run_of(from);
+        if Arc::ptr_eq(&self.runs[index].table, &table) && self.end_of(index) > to {
             return;
         }
-        // The frame becomes a run of its own, and joins its neighbours where they are alike.
-        let index = self.split_at(frame, index);
-        if frame < self.horizon && self.end_of(index) > frame.next() {
-            self.split_at(frame.next(), index);
+        // The frames become a run of their own, and join their neighbours where they are alike.
+        let index = self.split_at(from, index);
+        let last = self.run_of(to);
+        if to < self.horizon && self.end_of(last) > to.next() {
+            self.split_at(to.next(), last);
+        }
+        for run in self.runs.drain(index + 1..=last) {
+            self.bytes -= run.bytes;
         }
         self.runs[index].table = table;
         self.count(index);
         self.count(index + 1);
         self.join(index + 1);
         self.join(index);
+    }
+
+    /// Moves the horizon on: the frames after it are as the last one is.
+    pub(crate) fn extend_to(&mut self, horizon: Frame) {
+        self.horizon = self.horizon.max(horizon);
     }
 
     /// Forgets the tables before a frame that is stored.
@@ -229,6 +243,16 @@ mod tests {
                 2..12 => {
                     both.plain.push_back(Arc::clone(&value));
                     both.tables.push(value);
+                }
+                12 => {
+                    let last = Arc::clone(&both.plain[both.plain.len() - 1]);
+                    both.plain.extend(vec![last; at as usize % 5]);
+                    both.tables.extend_to(both.oldest.plus(both.plain.len() as u64 - 1));
+                }
+                13..15 => {
+                    let to = at + random.below(both.plain.len() as u64 - at);
+                    (at..=to).for_each(|index| both.plain[index as usize] = Arc::clone(&value));
+                    both.tables.set_run(both.oldest.plus(at), both.oldest.plus(to), value);
                 }
                 _ => {
                     both.plain[at as usize] = Arc::clone(&value);

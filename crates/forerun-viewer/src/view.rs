@@ -68,6 +68,17 @@ pub enum Theme {
     Light,
 }
 
+impl Theme {
+    /// The other one.
+    #[must_use]
+    pub const fn other(self) -> Theme {
+        match self {
+            Theme::Dark => Theme::Light,
+            Theme::Light => Theme::Dark,
+        }
+    }
+}
+
 /// Transparent pictures of what is still to come (the dissertation's figure 5.7).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -190,6 +201,8 @@ impl Default for Grip {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Open {
+    /// The panel of tools.
+    pub tools: bool,
     /// The panel of the selection.
     pub inspector: bool,
     /// The plots.
@@ -200,7 +213,7 @@ pub struct Open {
 
 impl Default for Open {
     fn default() -> Self {
-        Open { inspector: true, plots: false, help: false }
+        Open { tools: true, inspector: true, plots: false, help: false }
     }
 }
 

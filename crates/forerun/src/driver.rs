@@ -17,6 +17,7 @@ mod physics;
 mod picture;
 mod reach;
 mod refusal;
+mod remote;
 mod stage_times;
 mod threads;
 
@@ -32,5 +33,6 @@ pub use inquiry::{Answer, Answered, InquiryError, Question, Ticket};
 pub use physics::Hinder;
 pub use picture::Picture;
 pub use refusal::{AdoptError, Refusal};
+pub use remote::{Courier, RemoteError, RemotePhysics, RemoteSettings};
 pub use stage_times::StageTimes;
 pub use threads::{Threads, ThreadsError};

@@ -75,9 +75,10 @@ pub use forerun_scene as scene;
 pub use forerun_timeline as timeline;
 
 pub use driver::{
-    AdoptError, Answer, Answered, Blending, ChangeError, Clock, Coupled, Decoupled, DecoupledSettings,
-    DriverError, Fork, FrameNote, Hinder, InquiryError, Offset, Picture, Question, Refusal, StageTimes,
-    StepLimits, Threads, ThreadsError, Ticket,
+    AdoptError, Answer, Answered, Blending, ChangeError, Clock, Coupled, Courier, Decoupled,
+    DecoupledSettings, DriverError, Fork, FrameNote, Hinder, InquiryError, Offset, Picture, Question,
+    Refusal, RemoteError, RemotePhysics, RemoteSettings, StageTimes, StepLimits, Threads, ThreadsError,
+    Ticket,
 };
 pub use forerun_dynamics::{
     Body, BodyDef, BodyError, BodyId, BodyKind, BodyState, Environment, EnvironmentError, InspectedBody,

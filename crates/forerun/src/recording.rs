@@ -7,12 +7,12 @@ mod decode;
 mod encode;
 mod error;
 mod file;
-mod large_shapes;
-mod orders;
+pub(crate) mod large_shapes;
+pub(crate) mod orders;
 mod recorder;
 mod replay;
-mod start;
-mod states;
+pub(crate) mod start;
+pub(crate) mod states;
 
 use std::path::Path;
 

@@ -17,6 +17,9 @@ use crate::sdf::nearest::Skin;
 use crate::sdf::pseudo_normals::PseudoNormals;
 use crate::sdf::{BakeProgress, Field};
 
+/// Farther out along an axis, positions are rounded to decimetres, and mass and inertia soon are no `f32` any more. Metres.
+const POSITION_MAX_M: f32 = 1e6;
+
 /// How a mesh is to be made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeshOptions {
@@ -124,10 +127,17 @@ impl MeshDraft {
 
     fn cover(&mut self) {
         self.covers = covers(&self.vertices, &self.triangles);
-        self.repairs.crowded_edges = crowded_edges(&self.triangles);
-        self.repairs.hole_edges = self.covers.triangles.len() as u32;
-        self.repairs.first_hole =
-            self.covers.triangles.first().map(|t| [t[0], t[1]].map(|v| self.vertices[v as usize]));
+        let (crowded_edges, first_crowded) = crowded_edges(&self.triangles);
+        let first_cover = self.covers.triangles.first().map(|t| [t[0], t[1]]);
+        let ends = |edge: Option<[u32; 2]>| edge.map(|edge| edge.map(|v| self.vertices[v as usize]));
+        self.repairs = MeshRepairs {
+            holes: self.covers.apexes.len() as u32,
+            hole_edges: self.covers.triangles.len() as u32,
+            first_hole: ends(first_cover),
+            crowded_edges,
+            first_crowded: ends(first_crowded),
+            ..self.repairs
+        };
     }
 
     /// Signed volume (m³) and area (m²), covers of holes included.
@@ -231,6 +241,9 @@ type Parts = (Vec<Vec3>, Vec<[u32; 3]>, MeshRepairs);
 fn clean(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Parts, MeshError> {
     if let Some(vertex) = vertices.iter().position(|v| !v.is_finite()) {
         return Err(MeshError::NotFinite { vertex, position: vertices[vertex] });
+    }
+    if let Some(vertex) = vertices.iter().position(|v| v.abs().max_element() > POSITION_MAX_M) {
+        return Err(MeshError::TooFar { vertex, position: vertices[vertex], most: POSITION_MAX_M });
     }
     for (triangle, corners) in triangles.iter().enumerate() {
         if let Some(&index) = corners.iter().find(|i| **i as usize >= vertices.len()) {

@@ -215,7 +215,7 @@ fn counted(what: &str, count: usize) -> String {
 }
 
 /// As menus say it.
-fn label_of(change: &Change) -> &'static str {
+pub(super) fn label_of(change: &Change) -> &'static str {
     match change {
         Change::Add { .. } => "add",
         Change::Remove { .. } => "remove",

@@ -56,6 +56,7 @@ impl Play {
 
     fn forget_the_future(&mut self) {
         self.history.clear();
+        self.editing = None;
         self.questions = super::questions::Questions::default();
         self.tell_speed();
     }

@@ -23,7 +23,7 @@ use super::stage_times::StageWatch;
 use crate::{BodyId, Clock, Recorder, Threads};
 
 /// The largest queue: its memory is taken at the start, and a queue without room would never be drained.
-const COMMANDS_MAX: usize = 65_536;
+pub(super) const COMMANDS_MAX: usize = 65_536;
 
 /// The fastest that a display may go. No physics feeds more, and times stay exact.
 const SPEED_MAX: f64 = 1000.0;
@@ -68,6 +68,7 @@ impl DecoupledSettings {
 #[derive(Debug)]
 pub struct Decoupled {
     shared: Arc<Shared>,
+    /// `None` where the physics is elsewhere.
     physics: Option<JoinHandle<()>>,
     messages: SyncSender<Message>,
     refusals: Receiver<Refusal>,
@@ -78,7 +79,7 @@ pub struct Decoupled {
     pace: Pace,
     blend: Blend,
     names: Arc<Names>,
-    /// The thread that answers questions, once something was asked.
+    /// Where questions are laid down, once something was asked.
     inquiry: Option<Inquiry>,
     /// The number of the next question.
     tickets: u64,
@@ -122,7 +123,7 @@ impl Decoupled {
         let names = Names::after(&mut timeline);
         let lookahead = timeline.settings().lookahead;
         let reach = Reach::new(lookahead);
-        let shared = Arc::new(Shared::new(&timeline));
+        let shared = Arc::new(Shared::new(Published::of(&timeline), &timeline.settings(), displayed));
         let physics = physics::Physics {
             timeline,
             shared: Arc::clone(&shared),
@@ -155,6 +156,34 @@ impl Decoupled {
             inquiry: None,
             tickets: 0,
         })
+    }
+
+    /// A handle on a physics that is elsewhere: what it says comes through the other ends of these queues.
+    pub(super) fn elsewhere(
+        shared: Arc<Shared>,
+        names: Arc<Names>,
+        lookahead: u32,
+        ends: (SyncSender<Message>, Receiver<Refusal>, Inquiry),
+    ) -> Self {
+        let (frame, _) = shared.shown();
+        let frame_seconds = shared.published.load().snapshot.frame_seconds();
+        let (messages, refusals, inquiry) = ends;
+        // Nobody sends any.
+        let (_, forks) = sync_channel(1);
+        Decoupled {
+            shared,
+            physics: None,
+            messages,
+            refusals,
+            forks,
+            frame_seconds: f64::from(frame_seconds),
+            lookahead_s: f64::from(lookahead) * f64::from(frame_seconds),
+            pace: Pace::starting_at(frame.seconds(frame_seconds)),
+            blend: Blend::default(),
+            names,
+            inquiry: Some(inquiry),
+            tickets: 0,
+        }
     }
 
     /// What to draw when the caller's clock shows `real_s` (seconds; the first call says where it begins, and one that goes back stands
@@ -267,10 +296,11 @@ impl Decoupled {
     }
 
     fn alive(&self) -> Result<(), DriverError> {
-        match self.physics.as_ref().is_some_and(JoinHandle::is_finished) {
-            true => Err(self.failure()),
-            false => Ok(()),
-        }
+        let failed = match &self.physics {
+            Some(thread) => thread.is_finished(),
+            None => self.shared.panic.lock().unwrap_or_else(PoisonError::into_inner).is_some(),
+        };
+        if failed { Err(self.failure()) } else { Ok(()) }
     }
 
     fn failure(&self) -> DriverError {
@@ -292,6 +322,8 @@ impl Drop for Decoupled {
 #[cfg(test)]
 mod order_tests;
 mod orders;
+#[cfg(test)]
+mod question_tests;
 mod questions;
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "times are kept to the bit where nothing is late")]

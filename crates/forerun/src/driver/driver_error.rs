@@ -20,6 +20,8 @@ pub enum DriverError {
     NotStarted(String),
     /// Too many commands wait already: show a picture and try again.
     QueueFull,
+    /// The physics is elsewhere, and forks cannot be had from there.
+    Elsewhere,
     /// The physics thread panicked: a bug. What was published before can still be shown.
     Panicked(String),
     /// The thread that answers questions panicked: a bug. Physics and pictures go on.
@@ -34,6 +36,9 @@ impl fmt::Display for DriverError {
             DriverError::NotStarted(cause) => write!(f, "the physics thread cannot be started: {cause}"),
             DriverError::QueueFull => {
                 f.write_str("the command queue is full: physics is behind; try again after the next picture")
+            }
+            DriverError::Elsewhere => {
+                f.write_str("the physics runs elsewhere, and forks stay there: ask it for a preview instead")
             }
             DriverError::Panicked(message) => write!(f, "the physics thread panicked: {message}"),
             DriverError::AnswersPanicked(message) => {

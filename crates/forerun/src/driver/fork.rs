@@ -23,10 +23,17 @@ pub(super) struct Names {
 impl Names {
     /// Counts on after those of a timeline.
     pub(super) fn after(timeline: &mut Timeline) -> Arc<Names> {
-        Arc::new(Names {
-            body: AtomicU32::new(timeline.reserve_body().0),
-            sequence: AtomicU64::new(timeline.next_sequence()),
-        })
+        Names::from(timeline.reserve_body().0, timeline.next_sequence())
+    }
+
+    /// Counts on from these.
+    pub(super) fn from(body: u32, sequence: u64) -> Arc<Names> {
+        Arc::new(Names { body: AtomicU32::new(body), sequence: AtomicU64::new(sequence) })
+    }
+
+    /// What is next given to a body, and to a local command.
+    pub(super) fn next(&self) -> (u32, u64) {
+        (self.body.load(Ordering::Relaxed), self.sequence.load(Ordering::Relaxed))
     }
 
     /// A number that nobody else gets is all that is asked: no order with other memory.

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{JoinHandle, Thread};
 
 use arc_swap::{ArcSwap, ArcSwapOption};
-use forerun_timeline::{Frame, Order, Progress, Snapshot, Stats, Timeline};
+use forerun_timeline::{Frame, Order, Progress, Snapshot, Stats, Timeline, TimelineSettings};
 
 use super::fork::Fork;
 use super::frame_notes::{FrameNote, FrameNotes};
@@ -35,6 +35,13 @@ pub type Hinder = Box<dyn FnMut() + Send>;
 pub(super) struct Published {
     pub(super) snapshot: Arc<Snapshot>,
     pub(super) stats: Stats,
+}
+
+impl Published {
+    /// What there is to know of a timeline.
+    pub(super) fn of(timeline: &Timeline) -> Published {
+        Published { snapshot: timeline.snapshot(), stats: timeline.stats() }
+    }
 }
 
 /// What both sides see.
@@ -60,22 +67,19 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    pub(super) fn new(timeline: &Timeline) -> Self {
-        let settings = timeline.settings();
+    /// What the display sees first: of physics with these settings, while this frame is shown.
+    pub(super) fn new(published: Published, settings: &TimelineSettings, display: Frame) -> Self {
         // The newest note is at most the lookahead after the displayed frame; what is kept of the past may be shown too.
         let notes_kept =
             (settings.lookahead as usize).saturating_add(settings.past as usize).saturating_add(2);
         Shared {
-            published: ArcSwap::from_pointee(Published {
-                snapshot: timeline.snapshot(),
-                stats: timeline.stats(),
-            }),
+            published: ArcSwap::from_pointee(published),
             notes: FrameNotes::with_capacity(notes_kept.min(NOTES_MAX)),
             stage_times: StageTimesRing::new(),
             preview: ArcSwapOption::empty(),
             panic: Mutex::new(None),
             dropped_to: AtomicU64::new(u64::MAX),
-            display: AtomicU64::new(timeline.display().0),
+            display: AtomicU64::new(display.0),
             pictures: AtomicU64::new(0),
             stopping: AtomicBool::new(false),
             done: AtomicBool::new(false),
@@ -91,6 +95,31 @@ impl Shared {
         // Physics that is not even given a processor has not done its work.
         self.done.store(false, Ordering::Relaxed);
         self.wake();
+    }
+
+    /// The frame that is shown, and how many pictures were asked for so far.
+    pub(super) fn shown(&self) -> (Frame, u64) {
+        let pictures = self.pictures.load(Ordering::Relaxed);
+        // What was ordered before this frame was shown has been sent: see `tell_display`.
+        (Frame(self.display.load(Ordering::Acquire)), pictures)
+    }
+
+    /// Learns what is shown elsewhere.
+    pub(super) fn learn_shown(&self, frame: Frame, pictures: u64) {
+        self.display.store(frame.0, Ordering::Release);
+        self.pictures.store(pictures, Ordering::Relaxed);
+        self.done.store(false, Ordering::Relaxed);
+    }
+
+    /// Takes over what the physics elsewhere made known.
+    pub(super) fn learn_published(&self, published: Published, done: bool) {
+        self.published.store(Arc::new(published));
+        self.done.store(done, Ordering::Relaxed);
+    }
+
+    /// Learns that commands threw the physics back to a frame.
+    pub(super) fn learn_drop(&self, frame: Frame) {
+        self.dropped_to.fetch_min(frame.0, Ordering::Relaxed);
     }
 
     /// Whether physics waits for the display.
@@ -109,7 +138,7 @@ impl Shared {
         self.wake();
     }
 
-    fn take_preview(&self) -> Option<Arc<AskedPreview>> {
+    pub(super) fn take_preview(&self) -> Option<Arc<AskedPreview>> {
         // A look is cheaper than a swap, and nearly always there is nothing.
         if self.preview.load().is_none() { None } else { self.preview.swap(None) }
     }
@@ -176,21 +205,9 @@ pub(super) fn spawn(mut physics: Physics, threads: Threads) -> io::Result<JoinHa
 impl Physics {
     fn run(&mut self) {
         while !self.shared.stopping.load(Ordering::Relaxed) {
-            self.catch_up();
-            match self.advance() {
-                Progress::Advanced(advance) => {
-                    let slices_max = u8::try_from(advance.slices_max).unwrap_or(u8::MAX);
-                    let areas_active = self.count_areas.then(|| self.timeline.areas_active(advance.frame));
-                    self.shared.notes.write(advance.frame, FrameNote { slices_max, areas_active });
-                    (self.hinder)();
-                    self.publish();
-                }
-                Progress::Idle => {
-                    self.caught_up = true;
-                    self.shared.done.store(true, Ordering::Relaxed);
-                    std::thread::park();
-                    self.shared.done.store(false, Ordering::Relaxed);
-                }
+            if self.turn() == Progress::Idle {
+                std::thread::park();
+                self.shared.done.store(false, Ordering::Relaxed);
             }
         }
         if let Some(recorder) = &self.recorder {
@@ -198,11 +215,31 @@ impl Physics {
         }
     }
 
+    /// Hears what waits, computes one frame and makes it known; `Idle` when there is none to compute.
+    pub(super) fn turn(&mut self) -> Progress {
+        self.catch_up();
+        let progress = self.advance();
+        match progress {
+            Progress::Advanced(advance) => {
+                let slices_max = u8::try_from(advance.slices_max).unwrap_or(u8::MAX);
+                let areas_active = self.count_areas.then(|| self.timeline.areas_active(advance.frame));
+                self.shared.notes.write(advance.frame, FrameNote { slices_max, areas_active });
+                (self.hinder)();
+                self.publish();
+            }
+            Progress::Idle => {
+                self.caught_up = true;
+                self.shared.done.store(true, Ordering::Relaxed);
+            }
+        }
+        progress
+    }
+
     /// Hears what waits and learns what is shown.
     ///
     /// What is shown is read first and learned last. So all that was ordered before it was shown is heard while the frames are still kept that it
     /// was ordered for, and what is heard is judged by what the user sees now.
-    fn catch_up(&mut self) {
+    pub(super) fn catch_up(&mut self) {
         let shown = Frame(self.shared.display.load(Ordering::Acquire));
         self.hear(shown);
         self.learn_display(shown);
@@ -295,9 +332,7 @@ impl Physics {
     }
 
     fn publish(&self) {
-        self.shared
-            .published
-            .store(Arc::new(Published { snapshot: self.timeline.snapshot(), stats: self.timeline.stats() }));
+        self.shared.published.store(Arc::new(Published::of(&self.timeline)));
     }
 }
 

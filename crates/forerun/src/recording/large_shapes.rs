@@ -16,22 +16,22 @@ use serde::{Deserialize, Serialize};
 const HULL_TOLERANCE: f32 = 1e-3;
 
 /// Three numbers.
-pub(super) type Three = [f32; 3];
+pub(crate) type Three = [f32; 3];
 
 /// A position and a rotation (x, y, z, w).
-pub(super) type PoseValue = (Three, [f32; 4]);
+pub(crate) type PoseValue = (Three, [f32; 4]);
 
-pub(super) fn pose_value(pose: &Pose) -> PoseValue {
+pub(crate) fn pose_value(pose: &Pose) -> PoseValue {
     (pose.position.to_array(), pose.rotation.to_array())
 }
 
-pub(super) fn pose_of((position, rotation): PoseValue) -> Pose {
+pub(crate) fn pose_of((position, rotation): PoseValue) -> Pose {
     Pose::new(Vec3::from_array(position), Quat::from_array(rotation))
 }
 
 /// A shape, as a body has it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) enum ShapeValue {
+pub(crate) enum ShapeValue {
     Sphere(f32),
     Cuboid(Three),
     Capsule {
@@ -49,7 +49,7 @@ pub(super) enum ShapeValue {
 
 /// A shape that is stored once.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) enum LargeShape {
+pub(crate) enum LargeShape {
     Hull {
         vertices: Vec<Three>,
         /// Normal, offset, first corner, number of corners.
@@ -73,7 +73,7 @@ pub(super) enum LargeShape {
 
 /// The shapes that a file has so far, to write others.
 #[derive(Debug, Default)]
-pub(super) struct StoredShapes {
+pub(crate) struct StoredShapes {
     /// By where it is in memory: its number.
     numbers: BTreeMap<usize, u32>,
     /// Kept, so that nothing else comes to be where they are.
@@ -81,8 +81,13 @@ pub(super) struct StoredShapes {
 }
 
 impl StoredShapes {
+    /// The shapes by their numbers.
+    pub(crate) fn shapes(&self) -> &[Shape] {
+        &self.kept
+    }
+
     /// The value of a shape. What has to be stored before goes to `new`, in this order.
-    pub(super) fn value(&mut self, shape: &Shape, new: &mut Vec<LargeShape>) -> ShapeValue {
+    pub(crate) fn value(&mut self, shape: &Shape, new: &mut Vec<LargeShape>) -> ShapeValue {
         let place = match shape {
             Shape::Sphere(s) => return ShapeValue::Sphere(s.radius),
             Shape::Cuboid(s) => return ShapeValue::Cuboid(s.half_extents.to_array()),
@@ -144,7 +149,7 @@ fn mesh_value(mesh: &Mesh) -> LargeShape {
 }
 
 /// The shape of a value; `stored` are those of the shape records so far.
-pub(super) fn shape_of(value: ShapeValue, stored: &[Shape]) -> Result<Shape, String> {
+pub(crate) fn shape_of(value: ShapeValue, stored: &[Shape]) -> Result<Shape, String> {
     let made = match value {
         ShapeValue::Sphere(radius) => Shape::sphere(radius).map(|_| Shape::Sphere(Sphere { radius })),
         ShapeValue::Cuboid(half_extents) => {
@@ -167,7 +172,16 @@ pub(super) fn shape_of(value: ShapeValue, stored: &[Shape]) -> Result<Shape, Str
 }
 
 /// A stored shape; `stored` are those before it. Distance fields are baked again.
-pub(super) fn large_shape_of(value: LargeShape, stored: &[Shape]) -> Result<Shape, String> {
+pub(crate) fn large_shape_of(value: LargeShape, stored: &[Shape]) -> Result<Shape, String> {
+    large_shape_with(value, stored, None)
+}
+
+/// The same with the distance field that a mesh had ([`Mesh::baked_bytes`]); it is baked again where that is damaged.
+pub(crate) fn large_shape_with(
+    value: LargeShape,
+    stored: &[Shape],
+    baked: Option<&[u8]>,
+) -> Result<Shape, String> {
     match value {
         LargeShape::Hull { vertices, faces, corners, edges, centre } => {
             let face = |(normal, offset, first, count)| HullFace {
@@ -191,7 +205,7 @@ pub(super) fn large_shape_of(value: LargeShape, stored: &[Shape]) -> Result<Shap
         }
         LargeShape::Mesh { vertices, triangles, inside, cell, repairs } => {
             let vertices: Vec<Vec3> = vertices.into_iter().map(Vec3::from_array).collect();
-            let mut mesh = mesh_of((vertices, triangles), inside, cell)?;
+            let mut mesh = mesh_of((vertices, triangles), (inside, cell), baked)?;
             let ([welded, unused, dropped, recut, flipped], turned) = repairs;
             mesh.repairs = MeshRepairs {
                 welded_vertices: welded,
@@ -217,11 +231,16 @@ pub(super) fn large_shape_of(value: LargeShape, stored: &[Shape]) -> Result<Shap
 }
 
 /// The mesh of triangles that came from one.
-fn mesh_of(triangles: (Vec<Vec3>, Vec<[u32; 3]>), inside: bool, cell: Option<f32>) -> Result<Mesh, String> {
+fn mesh_of(
+    triangles: (Vec<Vec3>, Vec<[u32; 3]>),
+    (inside, cell): (bool, Option<f32>),
+    baked: Option<&[u8]>,
+) -> Result<Mesh, String> {
     let options = MeshOptions { inside: if inside { Inside::Needed } else { Inside::Optional }, cell };
     let fail = |error| format!("a mesh: {error}");
     let draft = MeshDraft::new(triangles.0.clone(), triangles.1.clone(), options).map_err(fail)?;
-    let mesh = draft.bake(&|_, _| {}).map_err(fail)?;
+    let restored = baked.and_then(|bytes| draft.restore(bytes).ok());
+    let mesh = restored.map_or_else(|| draft.bake(&|_, _| {}).map_err(fail), Ok)?;
     // A mesh that was mended once needs no more of it.
     if (&mesh.vertices, &mesh.triangles) != (&triangles.0, &triangles.1) {
         return Err("a mesh that does not come out as it was".to_owned());

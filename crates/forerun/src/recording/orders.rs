@@ -11,7 +11,7 @@ use super::large_shapes::{
 
 /// How a body is made. What most bodies have in common is left out: no rotation, velocities, forces; a factor on gravity of 1.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct DefValue {
+pub(crate) struct DefValue {
     shape: ShapeValue,
     position: Three,
     rotation: Option<[f32; 4]>,
@@ -26,7 +26,7 @@ pub(super) struct DefValue {
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) enum KindValue {
+pub(crate) enum KindValue {
     Dynamic,
     Fixed,
     Kinematic,
@@ -40,21 +40,21 @@ enum MassValue {
 }
 
 /// Anchor, target, frequency, damping ratio.
-pub(super) type SpringValue = (Three, Three, f32, f32);
+pub(crate) type SpringValue = (Three, Three, f32, f32);
 
 /// When a command acts, who sent it, and what it does.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct CommandValue {
+pub(crate) struct CommandValue {
     key: KeyValue,
     change: ChangeValue,
 }
 
 /// Frame, source, sequence number.
-type KeyValue = (u64, u32, u64);
+pub(crate) type KeyValue = (u64, u32, u64);
 
 /// As [`Change`]; the first number is the body.
 #[derive(Debug, Serialize, Deserialize)]
-enum ChangeValue {
+pub(crate) enum ChangeValue {
     Add(u32, Box<DefValue>),
     Remove(u32),
     Move(u32, PoseValue),
@@ -71,7 +71,7 @@ enum ChangeValue {
 
 /// As [`Order`].
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) enum OrderValue {
+pub(crate) enum OrderValue {
     Submit(CommandValue),
     Retract(KeyValue),
     Replace(CommandValue),
@@ -80,13 +80,13 @@ pub(super) enum OrderValue {
 }
 
 /// From the engine to the file. What has to be stored before goes to `new`.
-pub(super) struct ToFile<'a> {
-    pub(super) stored: &'a mut StoredShapes,
-    pub(super) new: &'a mut Vec<LargeShape>,
+pub(crate) struct ToFile<'a> {
+    pub(crate) stored: &'a mut StoredShapes,
+    pub(crate) new: &'a mut Vec<LargeShape>,
 }
 
 impl ToFile<'_> {
-    pub(super) fn def(&mut self, def: &BodyDef) -> DefValue {
+    pub(crate) fn def(&mut self, def: &BodyDef) -> DefValue {
         DefValue {
             shape: self.stored.value(&def.shape, self.new),
             position: def.pose.position.to_array(),
@@ -109,11 +109,15 @@ impl ToFile<'_> {
         }
     }
 
-    pub(super) fn command(&mut self, command: &Command) -> CommandValue {
-        CommandValue { key: key_value(&command.key), change: self.change(&command.change) }
+    pub(crate) fn command(&mut self, command: &Command) -> CommandValue {
+        self.command_of(&command.key, &command.change)
     }
 
-    pub(super) fn order(&mut self, order: &Order) -> OrderValue {
+    pub(crate) fn command_of(&mut self, key: &CommandKey, change: &Change) -> CommandValue {
+        CommandValue { key: key_value(key), change: self.change(change) }
+    }
+
+    pub(crate) fn order(&mut self, order: &Order) -> OrderValue {
         match order {
             Order::Submit(command) => OrderValue::Submit(self.command(command)),
             Order::Retract(key) => OrderValue::Retract(key_value(key)),
@@ -123,7 +127,7 @@ impl ToFile<'_> {
         }
     }
 
-    fn change(&mut self, change: &Change) -> ChangeValue {
+    pub(crate) fn change(&mut self, change: &Change) -> ChangeValue {
         match change {
             Change::Add { body, def } => ChangeValue::Add(body.0, Box::new(self.def(def))),
             Change::Remove { body } => ChangeValue::Remove(body.0),
@@ -150,7 +154,7 @@ impl ToFile<'_> {
 }
 
 /// The definition of a value; `stored` are the shapes so far.
-pub(super) fn def_of(value: DefValue, stored: &[Shape]) -> Result<BodyDef, String> {
+pub(crate) fn def_of(value: DefValue, stored: &[Shape]) -> Result<BodyDef, String> {
     let (velocity, angular_velocity) = value.velocities.unwrap_or(NOTHING);
     let (force, torque) = value.forces.unwrap_or(NOTHING);
     Ok(BodyDef {
@@ -196,11 +200,11 @@ fn bits_of_two((a, b): &(Three, Three)) -> ([u32; 3], [u32; 3]) {
     (bits_of(a), bits_of(b))
 }
 
-pub(super) fn command_of(value: CommandValue, stored: &[Shape]) -> Result<Command, String> {
+pub(crate) fn command_of(value: CommandValue, stored: &[Shape]) -> Result<Command, String> {
     Ok(Command { key: key_of(value.key), change: change_of(value.change, stored)? })
 }
 
-pub(super) fn order_of(value: OrderValue, stored: &[Shape]) -> Result<Order, String> {
+pub(crate) fn order_of(value: OrderValue, stored: &[Shape]) -> Result<Order, String> {
     Ok(match value {
         OrderValue::Submit(command) => Order::Submit(command_of(command, stored)?),
         OrderValue::Retract(key) => Order::Retract(key_of(key)),
@@ -210,7 +214,7 @@ pub(super) fn order_of(value: OrderValue, stored: &[Shape]) -> Result<Order, Str
     })
 }
 
-fn change_of(value: ChangeValue, stored: &[Shape]) -> Result<Change, String> {
+pub(crate) fn change_of(value: ChangeValue, stored: &[Shape]) -> Result<Change, String> {
     let three = Vec3::from_array;
     Ok(match value {
         ChangeValue::Add(body, def) => {
@@ -240,15 +244,15 @@ fn change_of(value: ChangeValue, stored: &[Shape]) -> Result<Change, String> {
     })
 }
 
-fn key_value(key: &CommandKey) -> KeyValue {
+pub(crate) fn key_value(key: &CommandKey) -> KeyValue {
     (key.frame.0, key.source, key.sequence)
 }
 
-fn key_of((frame, source, sequence): KeyValue) -> CommandKey {
+pub(crate) fn key_of((frame, source, sequence): KeyValue) -> CommandKey {
     CommandKey { frame: Frame(frame), source, sequence }
 }
 
-pub(super) fn kind_value(kind: BodyKind) -> KindValue {
+pub(crate) fn kind_value(kind: BodyKind) -> KindValue {
     match kind {
         BodyKind::Dynamic => KindValue::Dynamic,
         BodyKind::Fixed => KindValue::Fixed,
@@ -256,7 +260,7 @@ pub(super) fn kind_value(kind: BodyKind) -> KindValue {
     }
 }
 
-pub(super) fn kind_of(kind: KindValue) -> BodyKind {
+pub(crate) fn kind_of(kind: KindValue) -> BodyKind {
     match kind {
         KindValue::Dynamic => BodyKind::Dynamic,
         KindValue::Fixed => BodyKind::Fixed,
@@ -264,18 +268,18 @@ pub(super) fn kind_of(kind: KindValue) -> BodyKind {
     }
 }
 
-pub(super) fn material_value(material: &Material) -> Three {
+pub(crate) fn material_value(material: &Material) -> Three {
     [material.friction, material.static_friction, material.restitution]
 }
 
-pub(super) fn material_of([friction, static_friction, restitution]: Three) -> Material {
+pub(crate) fn material_of([friction, static_friction, restitution]: Three) -> Material {
     Material { friction, static_friction, restitution }
 }
 
-pub(super) fn spring_value(spring: &Spring) -> SpringValue {
+pub(crate) fn spring_value(spring: &Spring) -> SpringValue {
     (spring.anchor.to_array(), spring.target.to_array(), spring.frequency_hz, spring.damping_ratio)
 }
 
-pub(super) fn spring_of((anchor, target, frequency_hz, damping_ratio): SpringValue) -> Spring {
+pub(crate) fn spring_of((anchor, target, frequency_hz, damping_ratio): SpringValue) -> Spring {
     Spring { anchor: Vec3::from_array(anchor), target: Vec3::from_array(target), frequency_hz, damping_ratio }
 }

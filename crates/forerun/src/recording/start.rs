@@ -17,7 +17,7 @@ use super::states::{Words, state_of};
 
 /// Settings and frames.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct StartValue {
+pub(crate) struct StartValue {
     /// The version of the program that wrote the file: another one may compute other states.
     program: String,
     lookahead: u32,
@@ -29,14 +29,14 @@ pub(super) struct StartValue {
     oldest: u64,
     next_sequence: u64,
     /// How many names follow.
-    pub(super) names: u32,
+    pub(crate) names: u32,
     gravity: Three,
     step: StepValue,
 }
 
 /// As [`StepSettings`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct StepValue {
+pub(crate) struct StepValue {
     frame_seconds: f32,
     substeps: u32,
     first_sweeps: u32,
@@ -56,7 +56,7 @@ struct StepValue {
 
 /// What a name stands for.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct NameValue {
+pub(crate) struct NameValue {
     def: Option<DefValue>,
     body: PresenceValue,
 }
@@ -86,7 +86,7 @@ struct BodyValue {
 }
 
 /// The settings and frames of a timeline.
-pub(super) fn start_value(parts: &TimelineParts) -> StartValue {
+pub(crate) fn start_value(parts: &TimelineParts) -> StartValue {
     let TimelineSettings { lookahead, past, bytes_max, area_m, record_contacts } = parts.settings;
     StartValue {
         program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -105,7 +105,7 @@ pub(super) fn start_value(parts: &TimelineParts) -> StartValue {
 }
 
 /// A timeline of these settings, without names, commands and states.
-pub(super) fn start_of(value: StartValue) -> TimelineParts {
+pub(crate) fn start_of(value: StartValue) -> TimelineParts {
     TimelineParts {
         settings: TimelineSettings {
             lookahead: value.lookahead,
@@ -127,7 +127,7 @@ pub(super) fn start_of(value: StartValue) -> TimelineParts {
     }
 }
 
-fn step_value(settings: &StepSettings) -> StepValue {
+pub(crate) fn step_value(settings: &StepSettings) -> StepValue {
     StepValue {
         frame_seconds: settings.frame_seconds,
         substeps: settings.substeps,
@@ -147,7 +147,7 @@ fn step_value(settings: &StepSettings) -> StepValue {
     }
 }
 
-fn step_of(value: &StepValue) -> StepSettings {
+pub(crate) fn step_of(value: &StepValue) -> StepSettings {
     StepSettings {
         frame_seconds: value.frame_seconds,
         substeps: value.substeps,
@@ -171,7 +171,7 @@ fn step_of(value: &StepValue) -> StepSettings {
 }
 
 impl ToFile<'_> {
-    pub(super) fn name(&mut self, name: &NameParts) -> NameValue {
+    pub(crate) fn name(&mut self, name: &NameParts) -> NameValue {
         let NameParts { def, body } = name;
         let made = def.as_ref().and_then(|def| Body::new(def).ok());
         let presence = match (body, made) {
@@ -197,7 +197,7 @@ impl ToFile<'_> {
 }
 
 /// What a name stands for; `stored` are the shapes so far.
-pub(super) fn name_of(value: NameValue, stored: &[Shape]) -> Result<NameParts, String> {
+pub(crate) fn name_of(value: NameValue, stored: &[Shape]) -> Result<NameParts, String> {
     let def = value.def.map(|def| def_of(def, stored)).transpose()?.map(Arc::new);
     let made = |state: Option<Words>| -> Result<Option<BodyParts>, String> {
         let def = def.as_ref().ok_or("a body that was never made")?;

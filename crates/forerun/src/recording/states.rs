@@ -8,7 +8,7 @@ use forerun_dynamics::{BodyId, BodyState};
 use forerun_geometry::{Quat, Vec3};
 
 /// The bits of a state.
-pub(super) type Words = [u32; 14];
+pub(crate) type Words = [u32; 14];
 
 /// Says that the body is there no more.
 const GONE: u16 = 1 << 15;
@@ -16,7 +16,7 @@ const GONE: u16 = 1 << 15;
 /// What is stored of a body at a frame.
 type Entry = (BodyId, Option<BodyState>);
 
-pub(super) fn state_of(words: Words) -> BodyState {
+pub(crate) fn state_of(words: Words) -> BodyState {
     let f = |index: usize| f32::from_bits(words[index]);
     BodyState {
         position: Vec3::new(f(0), f(1), f(2)),
@@ -29,18 +29,18 @@ pub(super) fn state_of(words: Words) -> BodyState {
 
 /// The states of the last frame, by name.
 #[derive(Debug, Default)]
-pub(super) struct LastStates {
+pub(crate) struct LastStates {
     words: Vec<Option<Words>>,
 }
 
 impl LastStates {
     /// The states that the first frame is compared with.
-    pub(super) fn new(states: impl Iterator<Item = Option<BodyState>>) -> LastStates {
+    pub(crate) fn new(states: impl Iterator<Item = Option<BodyState>>) -> LastStates {
         LastStates { words: states.map(|state| state.map(|state| state.bits())).collect() }
     }
 
     /// The bytes of a frame.
-    pub(super) fn encode(&mut self, entries: &[Entry]) -> Vec<u8> {
+    pub(crate) fn encode(&mut self, entries: &[Entry]) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(60 * entries.len());
         let mut next = 0;
         for (body, state) in entries {
@@ -65,7 +65,7 @@ impl LastStates {
     }
 
     /// The frame of some bytes. Names are below `names`.
-    pub(super) fn decode(&mut self, mut bytes: &[u8], names: usize) -> Option<Vec<Entry>> {
+    pub(crate) fn decode(&mut self, mut bytes: &[u8], names: usize) -> Option<Vec<Entry>> {
         let mut entries = Vec::new();
         let mut next = 0_u32;
         self.words.resize(names.max(self.words.len()), None);

@@ -92,8 +92,9 @@ impl Decoupled {
     /// Asks for a fork: another future, to be tried beside the one that is shown. The physics makes it at its next frame, in microseconds.
     ///
     /// # Errors
-    /// As [`Decoupled::change`].
+    /// As [`Decoupled::change`]; [`DriverError::Elsewhere`] where the physics is in another process.
     pub fn request_fork(&self) -> Result<(), DriverError> {
+        self.at_hand()?;
         self.send(Message::Fork)
     }
 
@@ -108,14 +109,20 @@ impl Decoupled {
     /// drawn, that is blended over.
     ///
     /// # Errors
-    /// As [`Decoupled::change`].
+    /// As [`Decoupled::request_fork`].
     pub fn adopt(&self, fork: Fork) -> Result<(), DriverError> {
+        self.at_hand()?;
         self.send(Message::Adopt(Box::new(fork)))
     }
 
     /// What the physics was asked and did not do since the last call, and why. When nobody asks for long, the latest are lost.
     pub fn refusals(&mut self) -> Vec<Refusal> {
         self.refusals.try_iter().collect()
+    }
+
+    /// Timelines, which forks are, do not leave the process.
+    fn at_hand(&self) -> Result<(), DriverError> {
+        if self.physics.is_some() { Ok(()) } else { Err(DriverError::Elsewhere) }
     }
 
     fn send(&self, message: Message) -> Result<(), DriverError> {

@@ -57,6 +57,12 @@ pub(in crate::driver) struct Desk {
 }
 
 impl Desk {
+    /// Takes the question that lies here, to have it answered elsewhere.
+    pub(in crate::driver) fn take_inspection(&self) -> Option<Arc<AskedInspection>> {
+        // A look is cheaper than a swap, and nearly always there is nothing.
+        if self.inspection.load().is_none() { None } else { self.inspection.swap(None) }
+    }
+
     fn ask_inspection(&self, asked: AskedInspection) {
         self.inspection.store(Some(Arc::new(asked)));
         self.wake();
@@ -101,6 +107,7 @@ impl Desk {
 #[derive(Debug)]
 pub(in crate::driver) struct Inquiry {
     desk: Arc<Desk>,
+    /// `None` where questions are answered elsewhere.
     thread: Option<JoinHandle<()>>,
     answers: Receiver<Answered>,
 }
@@ -115,6 +122,13 @@ impl Inquiry {
         let thread = spawn(Arc::clone(&desk), answer_queue, threads);
         let thread = thread.map_err(|error| DriverError::NotStarted(error.to_string()))?;
         Ok(Inquiry { desk, thread: Some(thread), answers })
+    }
+
+    /// Where questions are laid down that are answered elsewhere, the desk where they lie, and where the answers go.
+    pub(in crate::driver) fn elsewhere() -> (Inquiry, Arc<Desk>, SyncSender<Answered>) {
+        let (answer_queue, answers) = sync_channel(ANSWERS_MAX);
+        let desk = Arc::new(Desk::default());
+        (Inquiry { desk: Arc::clone(&desk), thread: None, answers }, desk, answer_queue)
     }
 
     pub(in crate::driver) fn ask_inspection(&self, asked: AskedInspection) -> Result<(), DriverError> {
@@ -140,6 +154,14 @@ impl Inquiry {
             self.alive()?;
         }
         Ok(answered)
+    }
+
+    /// Ends the thread as a panic would.
+    #[cfg(test)]
+    pub(in crate::driver) fn kill(&self, message: &str) {
+        *self.desk.panic.lock().unwrap_or_else(PoisonError::into_inner) = Some(message.to_owned());
+        self.desk.stopping.store(true, Ordering::Relaxed);
+        self.desk.wake();
     }
 
     fn alive(&self) -> Result<(), DriverError> {

@@ -24,7 +24,7 @@ fn bench(mut timeline: Timeline) -> Bench {
     let (fork_queue, forks) = sync_channel(4);
     let names = Names::after(&mut timeline);
     let physics = Physics {
-        shared: Arc::new(Shared::new(&timeline)),
+        shared: Arc::new(Shared::new(Published::of(&timeline), &timeline.settings(), timeline.display())),
         messages: message_queue,
         refusals: refusal_queue,
         forks: fork_queue,
