@@ -24,7 +24,7 @@ mod surface;
 
 pub use colours::{Rgb, legend};
 pub use extras::{Extras, PreviewTrack};
-pub use labels::write_labels;
+pub use labels::{write_failure, write_labels};
 
 use forerun::{FrameInspection, Vec3};
 use three_d::{ClearState, Context, CoreError, RenderTarget, Viewport};
