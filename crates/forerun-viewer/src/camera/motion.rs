@@ -83,6 +83,11 @@ impl Motion {
         self.flying && self.held.contains(&true)
     }
 
+    /// Whether the next picture is taken from elsewhere.
+    pub(super) fn is_under_way(&self) -> bool {
+        self.journey.is_some() || self.is_pushed()
+    }
+
     /// Lets go of everything.
     pub(crate) fn release(&mut self) {
         self.held = [false; 6];
