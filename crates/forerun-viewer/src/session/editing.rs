@@ -10,7 +10,7 @@ use super::acts::{Last, label_of};
 
 /// A value that is being changed.
 #[derive(Clone, Debug)]
-pub struct Editing {
+pub(super) struct Editing {
     /// What was said last.
     change: Change,
     last: Option<Last>,
