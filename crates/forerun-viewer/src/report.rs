@@ -326,7 +326,13 @@ mod tests {
 
     #[test]
     fn a_pixel_is_where_the_ray_through_it_goes() {
-        let camera = Camera { target: Vec3::new(1.0, 2.0, 3.0), yaw: 2.0, pitch: 0.3, distance: 7.0, ..Camera::default() };
+        let camera = Camera {
+            target: Vec3::new(1.0, 2.0, 3.0),
+            yaw: 2.0,
+            pitch: 0.3,
+            distance: 7.0,
+            ..Camera::default()
+        };
         let size = [1280.0, 720.0];
         let ray = camera.ray(0.4, -0.3, size[0] / size[1]);
         let [x, y] = pixel_of(&camera, size, ray.origin + ray.direction * 5.0).expect("before the eye");
