@@ -13,6 +13,7 @@ With --pictures, a folder gets one picture each of five scenes.
 
 import argparse
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -48,7 +49,9 @@ class Viewer:
         self.report_file.unlink(missing_ok=True)
         size = f"{SIZE[0]}x{SIZE[1]}"
         command = [str(binary), "view", scene, "--size", size, "--report", str(self.report_file)]
-        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        # Whatever the settings of this user are: the defaults.
+        environment = dict(os.environ, FORERUN_CONFIG_DIR="")
+        self.process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
         self.window = None
 
     def __enter__(self):

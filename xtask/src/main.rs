@@ -1,4 +1,4 @@
-//! Chores of this repository: `cargo xtask tidy`, `cargo xtask golden --bless`.
+//! Chores of this repository: `cargo xtask tidy`, `cargo xtask golden --bless`, `cargo xtask web`.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -10,6 +10,7 @@ mod links;
 mod map;
 mod rooms;
 mod tidy;
+mod web;
 
 fn main() -> ExitCode {
     // xtask lies in the root of the repository.
@@ -18,8 +19,18 @@ fn main() -> ExitCode {
     match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["tidy"] => tidy_up(&root),
         ["golden", "--bless"] => golden::bless(&root),
+        ["web"] => match web::build(&root) {
+            Ok(dist) => {
+                eprintln!("{}", dist.display());
+                ExitCode::SUCCESS
+            }
+            Err(message) => {
+                eprintln!("{message}");
+                ExitCode::FAILURE
+            }
+        },
         _ => {
-            eprintln!("usage: cargo xtask tidy | golden --bless");
+            eprintln!("usage: cargo xtask tidy | golden --bless | web");
             ExitCode::from(2)
         }
     }

@@ -54,7 +54,7 @@ pub struct SnapshotDelta {
     pub undoable: (bool, bool),
     /// Edge of an area. Metres.
     pub area_m: f32,
-    /// Gravity and settings from which frame on, if that is not as before. Sorted by frame.
+    /// Gravity and settings from which frame on, if that is not as before. Sorted by frame; of two of one frame the later one holds.
     pub environments: Option<Vec<(Frame, Environment)>>,
 }
 

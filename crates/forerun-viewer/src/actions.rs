@@ -47,14 +47,18 @@ pub enum Action {
     Reload,
     /// Open a scene file.
     Open,
-    /// Keep a picture.
+    /// Keep a picture of the window.
     Screenshot,
+    /// Keep a picture without the panels.
+    BareScreenshot,
     /// Start or end a film.
     Film,
     /// Between the decoupled and the coupled driver.
     Coupled,
     /// Show or hide the plots.
     Plots,
+    /// Let the plots go on, or hold them.
+    HoldPlots,
     /// Show or hide the panel of the selection.
     Inspector,
     /// Show or hide ghosts of the future.
@@ -69,6 +73,14 @@ pub enum Action {
     ThrowTool,
     /// Push with the mouse.
     PushTool,
+    /// Between light and dark panels.
+    Theme,
+    /// Larger text and buttons.
+    Larger,
+    /// Smaller text and buttons.
+    Smaller,
+    /// Show or hide the list of built-in scenes.
+    Scenes,
     /// Show or hide this list.
     Help,
 }
@@ -136,8 +148,15 @@ pub const SHORTCUTS: &[Shortcut] = &[
     on(Key::L, With::Nothing, Action::Plots, "plots"),
     on(Key::N, With::Nothing, Action::Inspector, "panel of the selection"),
     on(Key::K, With::Nothing, Action::Coupled, "coupled or decoupled driver"),
-    on(Key::F12, With::Nothing, Action::Screenshot, "keep a picture"),
+    on(Key::B, With::Nothing, Action::Scenes, "built-in scenes"),
+    on(Key::L, With::Shift, Action::HoldPlots, "hold the plots, let them go on"),
+    on(Key::F12, With::Nothing, Action::Screenshot, "screenshot"),
+    on(Key::F12, With::Shift, Action::BareScreenshot, "screenshot without panels"),
     on(Key::F12, With::Ctrl, Action::Film, "start, end a film"),
+    on(Key::F10, With::Nothing, Action::Theme, "light or dark"),
+    on(Key::Equals, With::Ctrl, Action::Larger, "larger text and buttons"),
+    on(Key::Plus, With::Ctrl, Action::Larger, "larger text and buttons"),
+    on(Key::Minus, With::Ctrl, Action::Smaller, "smaller text and buttons"),
     on(Key::F1, With::Nothing, Action::Help, "this list"),
     on(Key::H, With::Nothing, Action::Help, "this list"),
 ];
@@ -166,6 +185,9 @@ impl Shortcut {
             Key::ArrowUp => "↑".to_owned(),
             Key::ArrowDown => "↓".to_owned(),
             Key::Escape => "Esc".to_owned(),
+            Key::Equals => "=".to_owned(),
+            Key::Plus => "+".to_owned(),
+            Key::Minus => "-".to_owned(),
             key => format!("{key:?}"),
         };
         match self.with {
@@ -174,6 +196,14 @@ impl Shortcut {
             With::Shift => format!("Shift+{key}"),
             With::CtrlShift => format!("Ctrl+Shift+{key}"),
         }
+    }
+}
+
+impl Action {
+    /// The keys that ask for it, for tooltips and menus: the first there are.
+    #[must_use]
+    pub fn keys(self) -> Option<String> {
+        SHORTCUTS.iter().find(|shortcut| shortcut.action == self).map(Shortcut::keys)
     }
 }
 

@@ -7,9 +7,24 @@ use forerun::{Decoupled, Scene};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
+#[cfg(target_arch = "wasm32")]
+mod web;
+#[cfg(target_arch = "wasm32")]
+mod web_files;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{Host, Starting};
+pub use native::{
+    Choosing, FilmWriter, Host, Link, Saving, Starting, Watch, choose_scene, load_settings, save_picture,
+    save_settings, save_text, watch,
+};
+
+#[cfg(target_arch = "wasm32")]
+pub use web::{Host, Link, Starting};
+#[cfg(target_arch = "wasm32")]
+pub use web_files::{
+    Choosing, FilmWriter, Saving, Watch, choose_scene, load_settings, save_picture, save_settings, save_text,
+    watch,
+};
 
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,4 +72,6 @@ pub struct Started {
     pub scene: Scene,
     /// The display's handle on the physics.
     pub driver: Decoupled,
+    /// The way to the physics, where that is elsewhere.
+    pub link: Link,
 }

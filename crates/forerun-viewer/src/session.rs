@@ -41,6 +41,10 @@ pub struct Session {
     pub stage: Stage,
     /// How many scenes were opened so far: who keeps something of a scene keeps this number with it.
     pub opened: u64,
+    /// Another scene that is being read while this one still plays.
+    coming: Option<(SceneSource, Starting)>,
+    /// Why the scene that was asked for last did not come, and which it was.
+    pub refused: Option<(SceneSource, String)>,
     /// How much slower every step of the physics is made, to see what a slow scene does. Seconds, 0 to 1.
     pub slow_down_s: f32,
     /// Where the timeline strip was drawn last, for scripts.
@@ -53,17 +57,43 @@ impl Session {
     #[must_use]
     pub fn new(host: Host, source: SceneSource) -> Session {
         let stage = Stage::Loading(host.start(&source));
-        Session { source, stage, opened: 1, slow_down_s: 0.0, strip: None, host }
+        Session { source, stage, opened: 1, coming: None, refused: None, slow_down_s: 0.0, strip: None, host }
     }
 
-    /// Opens another scene. The one before ends.
+    /// Opens another scene. The one before goes on until this one is there, and stays if it cannot be played.
     pub fn open(&mut self, source: SceneSource) {
-        let before = std::mem::replace(&mut self.stage, Stage::Loading(self.host.start(&source)));
-        if let Stage::Playing(play) = before {
-            self.host.end(play.driver);
+        self.refused = None;
+        let starting = self.host.start(&source);
+        if matches!(self.stage, Stage::Playing(_)) {
+            self.coming = Some((source, starting));
+        } else {
+            self.stage = Stage::Loading(starting);
+            self.source = source;
+            self.opened += 1;
         }
-        self.source = source;
-        self.opened += 1;
+    }
+
+    /// The scene that is being read while another one still plays.
+    #[must_use]
+    pub fn coming(&self) -> Option<&SceneSource> {
+        self.coming.as_ref().map(|(source, _)| source)
+    }
+
+    fn take_coming(&mut self) {
+        let Some((_, starting)) = &mut self.coming else { return };
+        let Some(started) = starting.poll() else { return };
+        let Some((source, _)) = self.coming.take() else { return };
+        match started {
+            Ok(started) => {
+                let playing = Stage::Playing(Box::new(Play::of(started)));
+                if let Stage::Playing(play) = std::mem::replace(&mut self.stage, playing) {
+                    self.host.end(play.driver);
+                }
+                self.source = source;
+                self.opened += 1;
+            }
+            Err(message) => self.refused = Some((source, message)),
+        }
     }
 
     /// Reads the scene again, from its start.
@@ -73,6 +103,7 @@ impl Session {
 
     /// Takes what is there by now and shows it at the window's clock (seconds).
     pub fn show(&mut self, real_s: f64) {
+        self.take_coming();
         if let Stage::Loading(starting) = &mut self.stage
             && let Some(started) = starting.poll()
         {

@@ -68,6 +68,17 @@ pub enum Theme {
     Light,
 }
 
+impl Theme {
+    /// The other one.
+    #[must_use]
+    pub const fn other(self) -> Theme {
+        match self {
+            Theme::Dark => Theme::Light,
+            Theme::Light => Theme::Dark,
+        }
+    }
+}
+
 /// Transparent pictures of what is still to come (the dissertation's figure 5.7).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

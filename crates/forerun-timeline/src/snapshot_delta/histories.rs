@@ -91,7 +91,8 @@ pub(super) fn apply(
 }
 
 fn check_environments(environments: &[(Frame, Environment)]) -> Result<(), DeltaError> {
-    if environments.is_empty() || !environments.is_sorted_by(|(a, _), (b, _)| a < b) {
+    // Two commands of one frame leave two entries: the later one holds.
+    if environments.is_empty() || !environments.is_sorted_by_key(|(from, _)| *from) {
         return Err(wrong("environments", "are none, or not in their order"));
     }
     for (_, environment) in environments {

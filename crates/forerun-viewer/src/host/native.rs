@@ -1,5 +1,11 @@
 //! The desktop: physics in a thread, scenes and settings in files.
 
+mod files;
+mod pictures;
+
+pub use files::{Choosing, Watch, choose_scene, load_settings, save_settings, watch};
+pub use pictures::{FilmWriter, Saving, save_picture, save_text};
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -30,6 +36,20 @@ pub struct Host {
 #[derive(Debug)]
 pub struct Starting {
     started: Receiver<Result<Started, String>>,
+}
+
+/// The way to the physics: there is none, as the two share memory.
+#[derive(Debug)]
+pub struct Link;
+
+impl Link {
+    /// Carries what was said on both sides since the last call: nothing here.
+    ///
+    /// # Errors
+    /// None here.
+    pub fn carry(&mut self) -> Result<(), String> {
+        Ok(())
+    }
 }
 
 impl Host {
@@ -134,7 +154,7 @@ fn start(source: &SceneSource, baking: MeshBaking, slow_down: &SlowDown) -> Resu
     scene.baking = baking;
     let settings = Host::default().timeline_settings();
     let timeline = timeline_of(&scene, settings).map_err(|error| error.to_string())?;
-    Ok(Started { driver: decoupled(timeline, slow_down)?, scene })
+    Ok(Started { driver: decoupled(timeline, slow_down)?, scene, link: Link })
 }
 
 fn decoupled(timeline: Timeline, slow_down: &SlowDown) -> Result<Decoupled, String> {

@@ -10,7 +10,7 @@ use super::editing::Editing;
 use super::history::History;
 use super::questions::Questions;
 use super::selection::Selection;
-use crate::host::Started;
+use crate::host::{Link, Started};
 
 /// How fast a rewind goes, against the clock.
 const REWIND_SPEED: f64 = 1.0;
@@ -24,6 +24,8 @@ pub struct Play {
     pub driver: Decoupled,
     /// The traditional driver, in coupled mode.
     pub(super) coupled: Option<Coupled>,
+    /// The way to the physics.
+    link: Link,
     /// What was shown last.
     pub picture: Picture,
     /// The bodies as they are drawn, by id.
@@ -57,6 +59,7 @@ impl Play {
             scene: started.scene,
             driver: started.driver,
             coupled: None,
+            link: started.link,
             picture,
             samples: Vec::new(),
             selection: Selection::default(),
@@ -76,10 +79,13 @@ impl Play {
     pub(super) fn show(&mut self, real_s: f64) -> Result<(), String> {
         let since_s = (real_s - self.real_s).max(0.0);
         self.real_s = real_s;
+        self.link.carry()?;
         if self.coupled.is_some() {
             self.show_coupled();
         } else {
             self.show_decoupled(real_s, since_s).map_err(|error| error.to_string())?;
+            // What this picture asked for need not wait for the next.
+            self.link.carry()?;
         }
         let there = |body| self.samples.binary_search_by_key(&body, |(id, _)| *id).is_ok();
         self.selection.keep(there);
