@@ -26,7 +26,7 @@ SIZE = (1280, 720)
 # Software that draws without a graphics card takes its time.
 PATIENCE_S = 90.0
 # What panels may cover. Pixels from the left, the top, the right and the bottom.
-MARGINS = (240, 60, 300, 220)
+MARGINS = (240, 130, 330, 200)
 # Scene, keys, seconds until the picture is taken.
 PICTURES = [
     ("dominoes:60", [], 3.0),
