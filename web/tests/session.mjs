@@ -57,7 +57,7 @@ const playing = (s) => s.stage === "playing" && s.play.bodies > 0 && s.play.hori
 async function open(browser, server, query, viewport) {
   const page = await browser.newPage({ viewport });
   page.on("pageerror", (error) => {
-    if (!`${error}`.includes("not actual error")) {
+    if (!`${error}`.includes("isn't actually an error")) {
       console.log(`  page: ${error}`);
     }
   });
