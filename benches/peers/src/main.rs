@@ -25,6 +25,7 @@ mod quality;
 #[cfg(feature = "engines")]
 mod rapier;
 mod rounds;
+mod row;
 mod sets;
 mod shapes;
 mod stage;

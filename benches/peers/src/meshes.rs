@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{env, fs, process};
 
+use forerun::Scene;
 use serde::Serialize;
 
 use crate::engine::Kind;
@@ -13,6 +14,7 @@ use crate::measure::{Answer, Question, Task};
 use crate::mesh_run::{MeshAnswer, Worth};
 use crate::processes::Programs;
 use crate::rounds::{SceneAndFrames, StepTimes, step_times};
+use crate::row::{self, Outcome};
 use crate::shapes::Fit;
 
 /// What is compared.
@@ -26,23 +28,7 @@ pub(crate) struct Plan {
 }
 
 /// One engine on one scene.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct Row {
-    pub(crate) scene: String,
-    /// That were asked for.
-    pub(crate) frames: u32,
-    pub(crate) kind: Kind,
-    pub(crate) engine: String,
-    #[serde(flatten)]
-    pub(crate) outcome: Outcome,
-}
-
-#[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Outcome {
-    Measured(Box<Measured>),
-    Cannot(String),
-}
+pub(crate) type Row = row::Row<Measured>;
 
 /// One engine on one scene, over all rounds.
 #[derive(Clone, Debug, Serialize)]
@@ -77,26 +63,21 @@ impl Drop for Folder {
     }
 }
 
-/// Runs the whole plan, every engine in turn in processes of its own.
+/// Runs the whole plan, every engine in turn in processes of its own. Scenes are opened before anything is built: a misspelt name is not to cost
+/// minutes.
 pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
+    let count = |typed: &SceneAndFrames| Scene::open(&typed.scene).map(|scene| scene.bodies.len());
+    let counts: Result<Vec<usize>, _> = plan.scenes.iter().map(count).collect();
+    let counts = counts.map_err(|error| error.to_string())?;
     let programs = Programs::build(&plan.engines, &[1])?;
     let folder = Folder::new()?;
     let mut rows = Vec::new();
-    for SceneAndFrames { scene, frames } in &plan.scenes {
+    for (SceneAndFrames { scene, frames }, bodies) in plan.scenes.iter().zip(counts) {
         for kind in &plan.engines {
             let task = Task { scene: scene.clone(), kind: *kind, frames: *frames, threads: 1 };
             eprintln!("{task}");
-            let outcome = match measure(&programs, &task, plan, &folder.0) {
-                Ok(measured) => Outcome::Measured(Box::new(measured)),
-                Err(why) => Outcome::Cannot(why),
-            };
-            rows.push(Row {
-                scene: task.scene,
-                frames: task.frames,
-                kind: *kind,
-                engine: kind.label(),
-                outcome,
-            });
+            let outcome = measure(&programs, &task, plan, &folder.0);
+            rows.push(Row::new(task, bodies, outcome));
         }
     }
     Ok(rows)
@@ -181,10 +162,8 @@ fn cells(row: &Row, m: &Measured, rows: &[Row]) -> String {
 /// Our mean over that of the fastest other engine that did all frames. None but for us.
 fn ratio(row: &Row, ours: &Measured, rows: &[Row]) -> Option<f64> {
     let others = rows.iter().filter(|other| other.scene == row.scene && other.kind != Kind::Forerun);
-    let means = others.filter_map(|other| match &other.outcome {
-        Outcome::Measured(m) if m.frames_done == other.frames => Some(m.steps.mean_ms),
-        _ => None,
-    });
+    let done = others.filter_map(|other| other.measured().filter(|m| m.frames_done == other.frames));
+    let means = done.map(|m| m.steps.mean_ms);
     let best = means.min_by(f64::total_cmp)?;
     (row.kind == Kind::Forerun).then_some(ours.steps.mean_ms / best)
 }
@@ -231,6 +210,10 @@ mod tests {
     use super::*;
     use crate::places::PlaceCount;
 
+    fn task(kind: Kind) -> Task {
+        Task { scene: "chain".to_owned(), kind, frames: 3, threads: 1 }
+    }
+
     fn row(kind: Kind, mean_ms: f64, frames_done: u32) -> Row {
         let times = vec![9.0, mean_ms, mean_ms];
         let worth = Worth {
@@ -251,15 +234,14 @@ mod tests {
             fit: Fit { hulls: 11, corners: 700, off_m: 0.01, opening: Some(0.98) },
             worth,
         };
-        let outcome = Outcome::Measured(Box::new(measured));
-        Row { scene: "chain".to_owned(), frames: 3, kind, engine: kind.label(), outcome }
+        Row::new(task(kind), 9, Ok(measured))
     }
 
     #[test]
     fn a_line_says_what_was_measured_and_who_was_faster() {
         let mut rows =
             vec![row(Kind::Forerun, 1.0, 3), row(Kind::Rapier, 2.0, 3), row(Kind::RapierTriangles, 0.5, 2)];
-        rows.push(Row { outcome: Outcome::Cannot("it fell over".to_owned()), ..row(Kind::Jolt, 0.0, 0) });
+        rows.push(Row::new(task(Kind::Jolt), 9, Err("it fell over".to_owned())));
         let text = markdown(&rows);
         let lines: Vec<&str> = text.lines().skip(2).collect();
         // The one that did not do all frames is not the best.

@@ -9,6 +9,7 @@ use crate::engine::Kind;
 use crate::measure::{Answer, Question, Task, Times};
 use crate::processes::Programs;
 use crate::quality::Quality;
+use crate::row;
 use crate::stage::Stage;
 
 /// What is compared.
@@ -28,24 +29,7 @@ pub(crate) struct SceneAndFrames {
 }
 
 /// One engine on one scene.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct Row {
-    pub(crate) scene: String,
-    pub(crate) bodies: usize,
-    pub(crate) frames: u32,
-    pub(crate) threads: u16,
-    pub(crate) kind: Kind,
-    pub(crate) engine: String,
-    #[serde(flatten)]
-    pub(crate) outcome: Outcome,
-}
-
-#[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Outcome {
-    Measured(Measured),
-    Cannot(String),
-}
+pub(crate) type Row = row::Row<Measured>;
 
 /// One engine on one scene, over all rounds.
 #[derive(Clone, Debug, Serialize)]
@@ -78,11 +62,6 @@ impl Measured {
 }
 
 impl Row {
-    /// What was measured, if the engine can do the scene.
-    pub(crate) fn measured(&self) -> Option<&Measured> {
-        if let Outcome::Measured(measured) = &self.outcome { Some(measured) } else { None }
-    }
-
     /// The times that count, if the engine can do the scene.
     pub(crate) fn times(&self) -> Option<&StepTimes> {
         self.measured().map(|measured| measured.counted(self.threads))
@@ -112,15 +91,8 @@ pub(crate) fn run(plan: &Plan) -> Result<Vec<Row>, String> {
         for &threads in &plan.threads {
             let tasks = tasks(threads);
             let outcomes = compare(&programs, &tasks, &qualities, plan.rounds);
-            rows.extend(tasks.into_iter().zip(outcomes).map(|(task, outcome)| Row {
-                scene: task.scene,
-                bodies,
-                frames: task.frames,
-                threads,
-                kind: task.kind,
-                engine: task.kind.label(),
-                outcome,
-            }));
+            let row = |(task, outcome)| Row::new(task, bodies, outcome);
+            rows.extend(tasks.into_iter().zip(outcomes).map(row));
         }
     }
     Ok(rows)
@@ -132,7 +104,7 @@ fn compare(
     tasks: &[Task],
     qualities: &[Result<Quality, String>],
     rounds: u32,
-) -> Vec<Outcome> {
+) -> Vec<Result<Measured, String>> {
     let mut times: Vec<Result<Vec<Times>, String>> = tasks.iter().map(|_| Ok(Vec::new())).collect();
     for round in 0..rounds as usize {
         for turn in 0..tasks.len() {
@@ -146,15 +118,8 @@ fn compare(
             }
         }
     }
-    qualities
-        .iter()
-        .zip(times)
-        .map(|(quality, times)| match (quality, times) {
-            (Ok(quality), Ok(times)) => Outcome::Measured(measured(quality.clone(), &times)),
-            (Err(why), _) => Outcome::Cannot(why.clone()),
-            (_, Err(why)) => Outcome::Cannot(why),
-        })
-        .collect()
+    let joined = qualities.iter().cloned().zip(times);
+    joined.map(|(quality, times)| Ok(measured(quality?, &times?))).collect()
 }
 
 impl fmt::Display for Task {

@@ -33,10 +33,11 @@ const SCENES: [Entry; 9] = [
 ];
 
 /// What meshes that move are used for.
-const MESH_SCENES: [Entry; 6] = [
+const MESH_SCENES: [Entry; 7] = [
     entry("tori", 300, Some(0.6)),
     entry("rings:100", 600, None),
     entry("chain", 300, None),
+    entry("nut", 300, None),
     entry("mugs", 300, None),
     entry("bowl", 300, None),
     entry("chairs", 300, None),
@@ -59,6 +60,8 @@ pub(crate) fn goal(scene: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::nut::Nut;
+    use crate::stage::Stage;
 
     #[test]
     fn every_scene_of_the_set_exists() {
@@ -66,5 +69,12 @@ mod tests {
             assert!(forerun::Scene::open(entry.scene).is_ok(), "{}", entry.scene);
         }
         assert_eq!((goal("islands"), goal("stack")), (Some(0.5), None));
+    }
+
+    #[test]
+    fn the_nut_is_followed_on_its_bolt() {
+        let entry = MESH_SCENES.iter().find(|entry| entry.scene == "nut").unwrap();
+        let scene = forerun::Scene::open(entry.scene).unwrap();
+        assert!(Nut::of(&scene, &Stage::of(&scene).unwrap()).is_some());
     }
 }

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use crate::engine::Kind;
 use crate::quality::Quality;
-use crate::rounds::{Measured, Outcome, Row};
+use crate::rounds::{Measured, Row};
+use crate::row::Outcome;
 use crate::sets;
 
 /// A small difference in overlap is nobody's merit. Metres.
@@ -203,6 +204,7 @@ fn verdict(ours: &Quality, peers: &[&Quality]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::Task;
     use crate::quality::Own;
     use crate::rounds::StepTimes;
 
@@ -224,20 +226,9 @@ mod tests {
             not_finite: 0,
             hulls_per_mesh: 0,
         };
-        Row {
-            scene: "islands".to_owned(),
-            bodies: 3,
-            frames: 10,
-            threads,
-            kind,
-            engine: kind.label(),
-            outcome: Outcome::Measured(Measured {
-                cpu: times(mean_ms),
-                wall: times(mean_ms + 1.0),
-                peak_bytes: None,
-                quality,
-            }),
-        }
+        let task = Task { scene: "islands".to_owned(), kind, frames: 10, threads };
+        let (cpu, wall) = (times(mean_ms), times(mean_ms + 1.0));
+        Row::new(task, 3, Ok(Measured { cpu, wall, peak_bytes: None, quality }))
     }
 
     #[test]

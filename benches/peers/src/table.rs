@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::engine::Kind;
-use crate::rounds::{Measured, Outcome, Row, StepTimes};
+use crate::rounds::{Measured, Row, StepTimes};
+use crate::row::Outcome;
 
 /// The table. In our rows the column `ours / best` compares with the fastest other engine on the same scene and threads.
 pub(crate) fn markdown(rows: &[Row]) -> String {
@@ -25,11 +26,9 @@ pub(crate) fn markdown(rows: &[Row]) -> String {
 
 /// How finely moving meshes were cut for the engine: it decides much of its time.
 fn hulls(row: &Row) -> String {
-    match &row.outcome {
-        Outcome::Measured(m) if m.quality.hulls_per_mesh > 0 => {
-            format!(", {} hulls a mesh", m.quality.hulls_per_mesh)
-        }
-        _ => String::new(),
+    match row.measured().map(|m| m.quality.hulls_per_mesh) {
+        None | Some(0) => String::new(),
+        Some(hulls) => format!(", {hulls} hulls a mesh"),
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod cases;
 mod gauge;
-#[cfg(test)]
 mod known_misses;
 mod lab;
 mod linkage;
@@ -11,6 +10,7 @@ mod timelines;
 use std::fmt;
 
 pub(crate) use cases::CASES;
+use known_misses::Miss;
 
 /// One number of a case beside what is asked of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,6 +137,12 @@ impl Figure {
     pub(crate) fn time_at_most(name: impl Into<String>, value: f64, limit: f64) -> Self {
         let verdict = Verdict::Timed { holds: value <= limit };
         Figure { verdict, ..Figure::at_most(name, value, limit) }
+    }
+
+    /// Why it misses its limit, as far as that is known; none of one that is not known to.
+    pub(crate) fn cause(&self, case: &str) -> Option<String> {
+        let known = if self.verdict == Verdict::Miss { Miss::of(case, &self.name) } else { None };
+        known.map(|known| known.says(self))
     }
 
     /// The value with as many digits as are of use.

@@ -1,39 +1,12 @@
 //! The command line as scripts see it: exit codes, JSON on standard output, files.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use common::{code, folder, forerun, json, text};
 use serde_json::Value;
-
-fn forerun(arguments: &[&str]) -> Output {
-    let command = Command::new(env!("CARGO_BIN_EXE_forerun")).args(arguments).output();
-    command.expect("the program starts")
-}
-
-fn code(output: &Output) -> Option<i32> {
-    output.status.code()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("output is UTF-8")
-}
-
-/// Standard output as one JSON object and nothing else.
-fn json(output: &Output) -> Value {
-    assert_eq!(code(output), Some(0), "{}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
-}
 
 fn keys(value: &Value) -> Vec<&str> {
     value.as_object().expect("an object").keys().map(String::as_str).collect()
-}
-
-/// A folder of its own for each test, made new.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("the target folder is ours");
-    folder
 }
 
 #[test]
@@ -261,6 +234,9 @@ fn validate_prints_one_json_object() {
     assert_eq!(report["passed"], count("pass"));
     assert_eq!(report["judged"], count("pass") + count("miss"));
     assert_eq!(report["not_run"].as_array().map(Vec::len), Some(0));
+    // Every miss of these two is known, and nothing else has a cause.
+    assert!(figures.iter().all(|figure| figure["cause"].is_string() == (figure["verdict"] == "miss")));
+    assert!(count("miss") > 0 && figures.iter().any(|f| f["cause"].to_string().contains("linear program")));
 }
 
 #[test]

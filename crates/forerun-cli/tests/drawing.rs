@@ -1,36 +1,16 @@
 //! `forerun mesh` and `forerun render` as scripts see them.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use std::path::Path;
+use std::process::Output;
+
+use common::{code, command, folder, json, run, text};
 use serde_json::Value;
-
-/// A folder of its own for each test, made new.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("the target folder is ours");
-    folder
-}
 
 /// Runs it in a folder, with a cache in that folder.
 fn forerun(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_forerun"));
-    command.args(arguments).current_dir(folder).env("FORERUN_CACHE_DIR", folder.join("cache"));
-    command.output().expect("the program starts")
-}
-
-fn code(output: &Output) -> Option<i32> {
-    output.status.code()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("output is UTF-8")
-}
-
-fn json(output: &Output) -> Value {
-    assert_eq!(code(output), Some(0), "{}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
+    run(command(arguments).current_dir(folder).env("FORERUN_CACHE_DIR", folder.join("cache")))
 }
 
 /// A brick with a square hole along z, of 32 triangles, as OBJ: `outer` and `inner` are half its width and that of the hole.

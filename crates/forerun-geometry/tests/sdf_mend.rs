@@ -60,7 +60,7 @@ fn small_holes_are_covered_and_named() {
     }
     let mesh = mesh(&holed);
     assert_eq!(mesh.enclosure, Enclosure::Mended);
-    assert_eq!(mesh.repairs.hole_edges, 9);
+    assert_eq!((mesh.repairs.holes, mesh.repairs.hole_edges), (3, 9));
     let [a, b] = mesh.repairs.first_hole.expect("it has three");
     assert!((a.length() - 0.5).abs() < 0.01 && (b.length() - 0.5).abs() < 0.01);
     let area: f32 = [900, 500, 37]
@@ -69,7 +69,9 @@ fn small_holes_are_covered_and_named() {
         .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0)
         .sum();
     assert!((mesh.repairs.cover_area / area - 1.0).abs() < 0.01, "{}", mesh.repairs);
-    assert!(mesh.repairs.to_string().contains("holes with 9 edges covered"), "{}", mesh.repairs);
+    assert!(mesh.repairs.to_string().contains("3 holes with 9 edges covered"), "{}", mesh.repairs);
+    let why = mesh.repairs.why_not_closed();
+    assert_eq!(why, format!("3 holes with 9 edges, the first between {a} and {b}"));
     compare(&mesh, |p| p.length() - 0.5, 0.3);
     let mass = mass(mesh);
     assert!((mass / truth - 1.0).abs() < 0.01, "{mass} instead of {truth}");
@@ -107,6 +109,7 @@ fn overlapping_shells_are_one_solid_without_walls_inside() {
     let mesh = mesh(&cross);
     assert_eq!(mesh.enclosure, Enclosure::Mended);
     assert!(mesh.repairs.inner_triangles > 0 && mesh.repairs.hole_edges == 0, "{}", mesh.repairs);
+    assert!(!mesh.repairs.why_not_closed().contains("hole"), "{}", mesh.repairs.why_not_closed());
     let cuboid = |p: Vec3, half: Vec3| {
         let q = p.abs() - half;
         q.max(Vec3::ZERO).length() + q.max_element().min(0.0)
@@ -156,7 +159,16 @@ fn a_wall_across_the_inside_does_not_count() {
     vertices.push(Vec3::ZERO);
     let mesh = mesh(&(vertices, triangles));
     assert_eq!((mesh.enclosure, mesh.repairs.inner_triangles), (Enclosure::Mended, 2));
-    assert!(mesh.repairs.crowded_edges > 0, "{}", mesh.repairs);
+    // The wall has an edge on each side of the box, and the box a diagonal along two of them.
+    let why = mesh.repairs.why_not_closed();
+    let crowded = mesh.repairs.crowded_edges;
+    assert!(
+        why.contains(&format!("{crowded} edges of more than two triangles, the first between [")),
+        "{why}"
+    );
+    assert!(crowded > 1 && why.ends_with("2 triangles at least partly inside of other parts"), "{why}");
+    let ends = mesh.repairs.first_crowded.expect("there are some");
+    assert!(ends.iter().all(|end| (end.x - end.y).abs() < 1e-6), "{ends:?}");
     assert!((distance(&mesh, Vec3::new(0.1, 0.1, 0.0)) + 0.4).abs() < 0.02);
 }
 

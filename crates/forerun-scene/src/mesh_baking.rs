@@ -80,7 +80,7 @@ impl BakeSite<'_> {
     pub(crate) fn make(&self, list: TriangleList, options: MeshOptions) -> Result<Mesh, MeshError> {
         let mesh = self.baking.make(self.name, list, options)?.mesh;
         if mesh.enclosure == Enclosure::Mended {
-            self.warn(&format!("was mended: {}", mesh.repairs));
+            self.warn(&format!("is not quite closed, and was mended: {}", mesh.repairs.why_not_closed()));
         }
         Ok(mesh)
     }

@@ -7,6 +7,7 @@ use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 
 use forerun_geometry::shape::{Mesh, MeshDraft};
 
@@ -17,6 +18,10 @@ const LARGEST_READ: u64 = 256 << 20;
 /// When all files take more than this, the oldest go. Bytes.
 const LARGEST_FOLDER: u64 = 512 << 20;
 const EXTENSION: &str = "field";
+/// What is being written, or was when its program was ended.
+const UNFINISHED: &str = "part";
+/// Nobody writes a file for longer than this.
+const WRITTEN_WITHIN: Duration = Duration::from_secs(24 * 3600);
 
 /// A folder with baked fields.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,10 +67,10 @@ impl MeshCache {
         if mesh.collider().field.as_ref().is_none_or(|field| field.bytes() < SMALLEST_KEPT) {
             return;
         }
-        let written = fs::create_dir_all(&self.folder)
-            .and_then(|()| write_whole(&self.path_of(draft), &mesh.baked_bytes()));
+        let path = self.path_of(draft);
+        let written = fs::create_dir_all(&self.folder).and_then(|()| write_whole(&path, &mesh.baked_bytes()));
         match written {
-            Ok(()) => self.prune(),
+            Ok(()) => self.prune(&path),
             Err(error) => warn(&format!(
                 "the field cannot be kept in {}: {error}; it will be baked again next time",
                 self.folder.display()
@@ -77,20 +82,29 @@ impl MeshCache {
         self.folder.join(draft.key().to_string()).with_extension(EXTENSION)
     }
 
-    /// Removes the oldest files where all together are too large. What cannot be looked at or removed stays.
-    fn prune(&self) {
-        let Ok(entries) = fs::read_dir(&self.folder) else { return };
-        let mut files: Vec<_> = entries
-            .flatten()
-            .filter(|entry| entry.path().extension().is_some_and(|extension| extension == EXTENSION))
-            .filter_map(|entry| {
-                let about = entry.metadata().ok()?;
-                Some((about.modified().ok()?, entry.path(), about.len()))
-            })
-            .collect();
-        files.sort();
-        let mut bytes: u64 = files.iter().map(|(.., bytes)| bytes).sum();
-        for (_, path, size) in files {
+    /// Removes what was never finished, and the oldest fields where all together are too large. What cannot be looked at or removed stays.
+    ///
+    /// A file is as old as it is older than `written`, which was written just now: the clock of the folder may be another machine's.
+    fn prune(&self, written: &Path) {
+        let now = fs::metadata(written).and_then(|about| about.modified());
+        let (Ok(now), Ok(entries)) = (now, fs::read_dir(&self.folder)) else { return };
+        let mut fields = Vec::new();
+        for entry in entries.flatten() {
+            let path = entry.path();
+            let Ok(about) = entry.metadata() else { continue };
+            let Ok(modified) = about.modified() else { continue };
+            if path.extension().is_some_and(|extension| extension == EXTENSION) {
+                fields.push((modified, path, about.len()));
+            } else if path.extension().is_some_and(|extension| extension == UNFINISHED)
+                && now.duration_since(modified).is_ok_and(|age| age > WRITTEN_WITHIN)
+            {
+                // Whoever else removes it does the same.
+                let _ = fs::remove_file(path);
+            }
+        }
+        fields.sort();
+        let mut bytes: u64 = fields.iter().map(|(.., bytes)| bytes).sum();
+        for (_, path, size) in fields {
             if bytes <= LARGEST_FOLDER {
                 return;
             }
@@ -112,7 +126,7 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // Two threads of this program may keep the same mesh.
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let unfinished = path.with_extension(format!("{}-{number}.part", std::process::id()));
+    let unfinished = path.with_extension(format!("{}-{number}.{UNFINISHED}", std::process::id()));
     let written = File::create(&unfinished)
         .and_then(|mut file| {
             file.write_all(bytes)?;

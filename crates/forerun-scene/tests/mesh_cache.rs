@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use forerun_geometry::mesh_file::TriangleList;
 use forerun_geometry::shape::{Mesh, MeshOptions, mesh_make};
@@ -92,6 +93,32 @@ fn a_folder_that_cannot_be_used_is_a_warning() {
         assert!(!kept && baked, "{warnings:?}");
         assert!(warnings.iter().any(|w| w.contains("cannot be kept")), "{warnings:?}");
     }
+}
+
+#[test]
+fn what_was_never_finished_goes_after_a_day() {
+    let folder = folder("abandoned_cache");
+    make(&folder);
+    let field = the_file(&folder);
+    let beside = |name: &str, days: u64| {
+        let path = folder.join(name);
+        std::fs::write(&path, "half a field").unwrap();
+        let file = std::fs::File::options().write(true).open(&path).unwrap();
+        let now = file.metadata().unwrap().modified().unwrap();
+        file.set_modified(now - Duration::from_secs(days * 25 * 3600)).unwrap();
+        path
+    };
+    let (abandoned, in_work) = (beside("0123.77-0.part", 1), beside("0123.78-0.part", 0));
+    let not_ours = beside("notes.txt", 400);
+    // Found again, nothing is written and nobody looks; kept anew, they do.
+    make(&folder);
+    assert!(abandoned.exists());
+    std::fs::remove_file(&field).unwrap();
+    assert_eq!(make(&folder), (false, true, vec![]));
+    assert_eq!(
+        [&abandoned, &in_work, &not_ours, &field].map(|path| path.exists()),
+        [false, true, true, true]
+    );
 }
 
 #[test]

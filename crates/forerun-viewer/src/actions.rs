@@ -31,6 +31,8 @@ pub enum Action {
     FrameAll,
     /// Remove the selected bodies.
     Delete,
+    /// Another body, where the camera looks.
+    Add,
     /// Another body like the selected one, beside it.
     Duplicate,
     /// Select nothing.
@@ -45,14 +47,18 @@ pub enum Action {
     Reload,
     /// Open a scene file.
     Open,
-    /// Keep a picture.
+    /// Keep a picture of the window.
     Screenshot,
+    /// Keep a picture without the panels.
+    BareScreenshot,
     /// Start or end a film.
     Film,
     /// Between the decoupled and the coupled driver.
     Coupled,
     /// Show or hide the plots.
     Plots,
+    /// Let the plots go on, or hold them.
+    HoldPlots,
     /// Show or hide the panel of the selection.
     Inspector,
     /// Show or hide ghosts of the future.
@@ -67,6 +73,14 @@ pub enum Action {
     ThrowTool,
     /// Push with the mouse.
     PushTool,
+    /// Between light and dark panels.
+    Theme,
+    /// Larger text and buttons.
+    Larger,
+    /// Smaller text and buttons.
+    Smaller,
+    /// Show or hide the list of built-in scenes.
+    Scenes,
     /// Show or hide this list.
     Help,
 }
@@ -119,6 +133,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     on(Key::T, With::Nothing, Action::ThrowTool, "throw"),
     on(Key::P, With::Nothing, Action::PushTool, "push"),
     on(Key::Delete, With::Nothing, Action::Delete, "remove the selection"),
+    on(Key::Insert, With::Nothing, Action::Add, "a body where the camera looks, as it would be thrown"),
     on(Key::D, With::Ctrl, Action::Duplicate, "another one like the selection"),
     on(Key::A, With::Ctrl, Action::SelectAll, "select all that moves"),
     on(Key::Escape, With::Nothing, Action::Deselect, "select nothing"),
@@ -133,8 +148,15 @@ pub const SHORTCUTS: &[Shortcut] = &[
     on(Key::L, With::Nothing, Action::Plots, "plots"),
     on(Key::N, With::Nothing, Action::Inspector, "panel of the selection"),
     on(Key::K, With::Nothing, Action::Coupled, "coupled or decoupled driver"),
-    on(Key::F12, With::Nothing, Action::Screenshot, "keep a picture"),
+    on(Key::B, With::Nothing, Action::Scenes, "built-in scenes"),
+    on(Key::L, With::Shift, Action::HoldPlots, "hold the plots, let them go on"),
+    on(Key::F12, With::Nothing, Action::Screenshot, "screenshot"),
+    on(Key::F12, With::Shift, Action::BareScreenshot, "screenshot without panels"),
     on(Key::F12, With::Ctrl, Action::Film, "start, end a film"),
+    on(Key::F10, With::Nothing, Action::Theme, "light or dark"),
+    on(Key::Equals, With::Ctrl, Action::Larger, "larger text and buttons"),
+    on(Key::Plus, With::Ctrl, Action::Larger, "larger text and buttons"),
+    on(Key::Minus, With::Ctrl, Action::Smaller, "smaller text and buttons"),
     on(Key::F1, With::Nothing, Action::Help, "this list"),
     on(Key::H, With::Nothing, Action::Help, "this list"),
 ];
@@ -163,6 +185,9 @@ impl Shortcut {
             Key::ArrowUp => "↑".to_owned(),
             Key::ArrowDown => "↓".to_owned(),
             Key::Escape => "Esc".to_owned(),
+            Key::Equals => "=".to_owned(),
+            Key::Plus => "+".to_owned(),
+            Key::Minus => "-".to_owned(),
             key => format!("{key:?}"),
         };
         match self.with {
@@ -171,6 +196,14 @@ impl Shortcut {
             With::Shift => format!("Shift+{key}"),
             With::CtrlShift => format!("Ctrl+Shift+{key}"),
         }
+    }
+}
+
+impl Action {
+    /// The keys that ask for it, for tooltips and menus: the first there are.
+    #[must_use]
+    pub fn keys(self) -> Option<String> {
+        SHORTCUTS.iter().find(|shortcut| shortcut.action == self).map(Shortcut::keys)
     }
 }
 

@@ -1,4 +1,14 @@
-//! Camera: an eye that goes round a point.
+//! Camera: an eye that goes round a point, flies, and travels to what it is to look at.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "where a picture is taken from need not be the same on all platforms"
+)]
+
+mod framing;
+mod motion;
+
+pub use framing::Framed;
+pub(crate) use motion::{Motion, Push};
 
 use forerun::{Ray, Vec3};
 
@@ -18,11 +28,13 @@ pub struct Camera {
     pub pitch: f32,
     /// From the target. Metres, above 0.
     pub distance: f32,
+    /// What moves it from picture to picture.
+    pub(crate) motion: Motion,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Camera { target: Vec3::ZERO, yaw: 0.6, pitch: 0.45, distance: 10.0 }
+        Camera { target: Vec3::ZERO, yaw: 0.6, pitch: 0.45, distance: 10.0, motion: Motion::default() }
     }
 }
 
@@ -60,12 +72,27 @@ impl Camera {
         2.0 * HALF_ANGLE
     }
 
+    /// Half the height of what is seen at distance 1.
+    #[must_use]
+    pub fn half_height(&self) -> f32 {
+        HALF_ANGLE.tan()
+    }
+
     /// From the eye through a place of the picture: `x` and `y` from -1 (left, bottom) to 1, `aspect` is width over height.
     #[must_use]
     pub fn ray(&self, x: f32, y: f32, aspect: f32) -> Ray {
-        let half = HALF_ANGLE.tan();
+        let half = self.half_height();
         let direction = self.forward() + self.right() * (x * half * aspect) + self.up() * (y * half);
         Ray { origin: self.eye(), direction: direction.normalize() }
+    }
+
+    /// The place in the picture of a point: `x` and `y` from -1 (left, bottom) to 1 where it is seen. None behind the eye.
+    #[must_use]
+    pub fn project(&self, point: Vec3, aspect: f32) -> Option<[f32; 2]> {
+        let (at, half) = (point - self.eye(), self.half_height());
+        let depth = at.dot(self.forward());
+        let place = [at.dot(self.right()) / (half * aspect * depth), at.dot(self.up()) / (half * depth)];
+        (depth > 0.0).then_some(place)
     }
 
     /// Goes round the target. Radians.
@@ -74,22 +101,89 @@ impl Camera {
         self.pitch = (self.pitch + pitch).clamp(-PITCH_MAX, PITCH_MAX);
     }
 
+    /// Turns where it is. Radians.
+    pub fn look_round(&mut self, yaw: f32, pitch: f32) {
+        let eye = self.eye();
+        self.orbit(yaw, pitch);
+        self.target = eye + self.forward() * self.distance;
+    }
+
     /// Moves the target with the picture, by parts of its height.
     pub fn pan(&mut self, right: f32, up: f32) {
-        let height = 2.0 * self.distance * HALF_ANGLE.tan();
+        self.motion.stop();
+        let height = 2.0 * self.distance * self.half_height();
         self.target += (self.right() * right + self.up() * up) * height;
     }
 
     /// Comes nearer by a factor above 0.
     pub fn zoom(&mut self, factor: f32) {
+        self.motion.stop();
         self.distance = (self.distance * factor).clamp(1e-3, 1e5);
+    }
+
+    /// Comes nearer by a factor above 0 to what lies under a ray as far away as the target: it stays where it is in the picture.
+    pub fn zoom_to(&mut self, factor: f32, ray: &Ray) {
+        let facing = ray.direction.dot(self.forward()).max(0.1);
+        let point = ray.origin + ray.direction * (self.distance / facing);
+        let before = self.distance;
+        self.zoom(factor);
+        self.target = point + (self.target - point) * (self.distance / before);
     }
 
     /// Looks at a ball from where it is, so that all of it is seen.
     pub fn look_at(&mut self, centre: Vec3, radius: f32) {
+        self.motion.stop();
         self.target = centre;
-        self.distance = (radius.max(1e-3) / HALF_ANGLE.sin()).clamp(1e-3, 1e5);
+        self.distance = distance_for(radius);
     }
+
+    /// Travels to where it sees all of a ball.
+    pub fn travel_to(&mut self, centre: Vec3, radius: f32) {
+        self.motion.travel(Framed { target: centre, distance: distance_for(radius), ..self.framed() });
+    }
+
+    /// Where it is now.
+    pub(crate) fn framed(&self) -> Framed {
+        Framed { target: self.target, distance: self.distance, yaw: self.yaw, pitch: self.pitch }
+    }
+
+    /// Is there.
+    pub fn jump(&mut self, framed: Framed) {
+        self.motion.stop();
+        self.place(framed);
+    }
+
+    /// Travels there.
+    pub fn travel(&mut self, framed: Framed) {
+        self.motion.travel(framed);
+    }
+
+    /// Ends a journey at once.
+    pub fn arrive(&mut self) {
+        if let Some(framed) = self.motion.journey(f32::INFINITY, &self.framed()) {
+            self.place(framed);
+        }
+    }
+
+    fn place(&mut self, Framed { target, distance, yaw, pitch }: Framed) {
+        (self.target, self.distance, self.yaw, self.pitch) = (target, distance, yaw, pitch);
+    }
+
+    /// Goes on by a time (seconds): flies while keys are held, and travels.
+    pub fn go_on(&mut self, elapsed_s: f32) {
+        let mut motion = self.motion;
+        let pushed = motion.flight(elapsed_s, self.distance);
+        self.target += self.right() * pushed.x + Vec3::Y * pushed.y + self.forward() * pushed.z;
+        if let Some(framed) = motion.journey(elapsed_s, &self.framed()) {
+            self.place(framed);
+        }
+        self.motion = motion;
+    }
+}
+
+/// From where a ball fills the picture. Metres.
+fn distance_for(radius: f32) -> f32 {
+    (radius.max(1e-3) / HALF_ANGLE.sin()).clamp(1e-3, 1e5)
 }
 
 #[cfg(test)]
@@ -98,7 +192,13 @@ mod tests {
 
     #[test]
     fn the_middle_of_the_picture_is_the_target() {
-        let camera = Camera { target: Vec3::new(1.0, 2.0, 3.0), yaw: 2.1, pitch: -0.7, distance: 4.0 };
+        let camera = Camera {
+            target: Vec3::new(1.0, 2.0, 3.0),
+            yaw: 2.1,
+            pitch: -0.7,
+            distance: 4.0,
+            ..Camera::default()
+        };
         let ray = camera.ray(0.0, 0.0, 1.7);
         assert!((ray.origin + ray.direction * 4.0 - camera.target).length() < 1e-5);
         assert!(camera.up().y > 0.0 && camera.right().dot(camera.up()).abs() < 1e-6);
@@ -113,5 +213,27 @@ mod tests {
         let point = before.origin + before.direction * depth;
         camera.pan(0.0, 0.5);
         assert!((camera.target - point).length() < 1e-4);
+    }
+
+    #[test]
+    fn what_is_projected_lies_on_its_ray_and_stays_there_in_a_zoom() {
+        let mut camera = Camera { target: Vec3::new(0.0, 1.0, -2.0), ..Camera::default() };
+        let ray = camera.ray(0.4, -0.6, 1.6);
+        let depth = camera.distance / ray.direction.dot(camera.forward());
+        let point = ray.origin + ray.direction * depth;
+        let near =
+            |place: Option<[f32; 2]>| place.is_some_and(|[x, y]| (x - 0.4).abs() + (y + 0.6).abs() < 1e-3);
+        assert!(near(camera.project(point, 1.6)));
+        camera.zoom_to(0.5, &ray);
+        assert!((camera.distance - 5.0).abs() < 1e-4 && near(camera.project(point, 1.6)));
+        assert_eq!(camera.project(camera.eye() - camera.forward(), 1.6), None);
+    }
+
+    #[test]
+    fn looking_round_leaves_the_eye_where_it_is() {
+        let mut camera = Camera::default();
+        let eye = camera.eye();
+        camera.look_round(0.3, -0.2);
+        assert!((camera.eye() - eye).length() < 1e-5);
     }
 }

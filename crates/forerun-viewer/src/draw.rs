@@ -1,33 +1,93 @@
-//! Drawing: bodies, ground and sky, by the graphics card.
+//! Drawing: bodies, ground and sky, what is still to come and what is inside a frame, by the graphics card.
+//!
+//! The shaders are our own ([`three_d`] lends windows, buffers and textures): bodies of one look go to the card as one call, and
+//! only what changed is sent. What is written here is the order of a picture: shadows, the mask of the selection, sky, ground, bodies,
+//! ghosts, lines, outline.
 
+mod bodies;
+mod colours;
 mod convert;
+mod crowd;
+mod extras;
+mod eye;
+mod ghosts;
+mod ground;
+mod labels;
+mod light;
+mod lines;
+mod outline;
+mod overlays;
+mod programs;
+mod shadow;
 mod surface;
 
-use std::collections::BTreeMap;
+pub use colours::{Rgb, legend};
+pub use extras::{Extras, PreviewTrack};
+pub use labels::write_labels;
 
-use forerun::BodyId;
-use three_d::{
-    AmbientLight, ClearState, Context, DirectionalLight, Gm, InstancedMesh, Instances, Light, Mat4, Object,
-    PhysicalMaterial, RenderTarget, Srgba, Viewport,
-};
+use forerun::{FrameInspection, Vec3};
+use three_d::{ClearState, Context, CoreError, RenderTarget, Viewport};
 
 use crate::camera::Camera;
 use crate::session::Play;
 use crate::view::View;
-use convert::{matrix_of, vector};
-use surface::Look;
+use bodies::Bodies;
+use convert::vector;
+use eye::Eye;
+use ghosts::Ghosts;
+use ground::Ground;
+use light::Light;
+use lines::{LineDrawer, Lines};
+use outline::Outline;
+use overlays::FieldSlice;
+use programs::{Programs, SOLID};
+use shadow::Shadows;
 
-/// Bodies of one shape.
-struct Batch {
-    model: Gm<InstancedMesh, PhysicalMaterial>,
+/// What is this many times as far as all that there is, is half haze.
+const HAZE: f32 = 5.0;
+
+/// What there is to draw.
+#[derive(Clone, Copy, Debug)]
+pub struct Scenery<'a> {
+    /// The scene that plays.
+    pub play: &'a Play,
+    /// Who keeps something of a scene keeps this number with it.
+    pub scene_number: u64,
+    /// Where it is seen from.
+    pub camera: &'a Camera,
+    /// How it is shown.
+    pub view: &'a View,
+    /// What the hands show.
+    pub extras: &'a Extras,
+    /// What is inside the frame that is shown, or one shortly before, when that is known.
+    pub inside: Option<&'a FrameInspection>,
 }
 
-/// What draws the scene. Keeps the surfaces of shapes between pictures.
+/// Whether the view shows anything that is only known from inside a frame.
+#[must_use]
+pub fn needs_inspection(view: &View) -> bool {
+    use crate::view::ColourBy::{Area, Island, Slices};
+    let overlays = &view.overlays;
+    overlays.contacts
+        || overlays.impulses
+        || overlays.levels
+        || overlays.bounds
+        || overlays.areas
+        || matches!(view.colour_by, Area | Island | Slices)
+}
+
+/// What draws the scene. Keeps what it sent to the graphics card between pictures.
 pub struct Painter {
     context: Context,
-    batches: BTreeMap<Look, Batch>,
-    sun: DirectionalLight,
-    sky: AmbientLight,
+    programs: Result<Programs, String>,
+    bodies: Bodies,
+    ghosts: Ghosts,
+    ground: Ground,
+    shadows: Shadows,
+    outline: Outline,
+    slice: FieldSlice,
+    lines: Lines,
+    line_drawer: LineDrawer,
     opened: u64,
 }
 
@@ -37,76 +97,89 @@ impl Painter {
     pub fn new(context: &Context) -> Painter {
         Painter {
             context: context.clone(),
-            batches: BTreeMap::new(),
-            sun: DirectionalLight::new(context, 2.2, Srgba::WHITE, three_d::vec3(-0.45, -1.0, -0.35)),
-            sky: AmbientLight::new(context, 0.45, Srgba::WHITE),
+            programs: Programs::new(context),
+            bodies: Bodies::default(),
+            ghosts: Ghosts::default(),
+            ground: Ground::new(context),
+            shadows: Shadows::default(),
+            outline: Outline::default(),
+            slice: FieldSlice::default(),
+            lines: Lines::default(),
+            line_drawer: LineDrawer::new(context),
             opened: 0,
         }
     }
 
-    /// Draws the picture that the session shows.
-    pub fn draw(
-        &mut self,
-        target: &RenderTarget<'_>,
-        viewport: Viewport,
-        play: &Play,
-        scene_number: u64,
-        camera: &Camera,
-        view: &View,
-    ) {
-        if self.opened != scene_number {
-            self.batches.clear();
-            self.opened = scene_number;
-        }
-        self.place(play);
-        let eye = three_d::Camera::new_perspective(
-            viewport,
-            vector(camera.eye()),
-            vector(camera.target),
-            vector(camera.up()),
-            three_d::radians(camera.angle()),
-            0.01 * camera.distance,
-            1000.0 * camera.distance,
-        );
-        let models = || self.batches.values().map(|batch| &batch.model);
-        if view.shadows {
-            // Without memory for a shadow map there are no shadows.
-            let _ = self.sun.generate_shadow_map(2048, models().map(|model| &model.geometry));
-        } else {
-            self.sun.clear_shadow_map();
-        }
-        let objects: Vec<&dyn Object> = models().map(|model| model as &dyn Object).collect();
-        let lights: [&dyn Light; 2] = [&self.sun, &self.sky];
-        target.clear(ClearState::color_and_depth(0.55, 0.65, 0.78, 1.0, 1.0)).render(&eye, objects, &lights);
+    /// Why nothing can be drawn: what the driver has against the shaders.
+    #[must_use]
+    pub fn failure(&self) -> Option<&str> {
+        self.programs.as_ref().err().map(String::as_str)
     }
 
-    fn place(&mut self, play: &Play) {
-        let mut placed: BTreeMap<Look, (BodyId, Vec<Mat4>, Vec<Srgba>)> = BTreeMap::new();
-        for (id, sample) in &play.samples {
-            let Some(body) = play.body(*id) else { continue };
-            let Some(key) = surface::look_of(&body.shape) else { continue };
-            let (_, matrices, colours) = placed.entry(key).or_insert_with(|| (*id, Vec::new(), Vec::new()));
-            matrices.push(matrix_of(&sample.pose) * surface::scale_of(&body.shape));
-            let hue = id.0.wrapping_mul(2_654_435_761) >> 8;
-            colours.push(Srgba::new_opaque(
-                90 + (hue & 127) as u8,
-                90 + (hue >> 7 & 127) as u8,
-                90 + (hue >> 14 & 127) as u8,
-            ));
+    /// Draws the picture that the session shows.
+    pub fn draw(&mut self, target: &RenderTarget<'_>, viewport: Viewport, scenery: &Scenery<'_>) {
+        if self.opened != scenery.scene_number {
+            self.bodies.forget();
+            self.ghosts.forget();
+            self.opened = scenery.scene_number;
         }
-        self.batches.retain(|key, _| placed.contains_key(key));
-        for (key, (id, transformations, colours)) in placed {
-            let instances = Instances { transformations, colors: Some(colours), ..Instances::default() };
-            match self.batches.get_mut(&key) {
-                Some(batch) => batch.model.geometry.set_instances(&instances),
-                None => {
-                    let Some(body) = play.body(id) else { continue };
-                    let mesh = InstancedMesh::new(&self.context, &instances, &surface::mesh_of(&body.shape));
-                    let material =
-                        PhysicalMaterial { roughness: 0.7, metallic: 0.0, ..PhysicalMaterial::default() };
-                    self.batches.insert(key, Batch { model: Gm::new(mesh, material) });
-                }
-            }
+        self.place(scenery);
+        let eye = Eye::new(scenery.camera, viewport, self.bodies.reach);
+        self.prepare(&eye, scenery);
+        target.clear(ClearState::depth(1.0));
+        let drawn = target.write::<CoreError>(|| {
+            self.fill(&eye, scenery);
+            Ok(())
+        });
+        // What draws cannot fail.
+        drop(drawn);
+    }
+
+    /// Where everything is, without the graphics card but for what it is sent.
+    fn place(&mut self, scenery: &Scenery<'_>) {
+        let cut = self.slice.prepare(&self.context, scenery);
+        self.bodies.place(&self.context, scenery, cut);
+        self.ghosts.place(&self.context, &mut self.bodies.surfaces, scenery);
+        self.lines.clear();
+        overlays::draw(&mut self.lines, scenery);
+        ghosts::draw_trails(&mut self.lines, scenery.play, scenery.view, scenery.extras);
+    }
+
+    /// What is drawn elsewhere than on the screen.
+    fn prepare(&mut self, eye: &Eye, scenery: &Scenery<'_>) {
+        let Ok(programs) = &self.programs else { return };
+        let Bodies { crowd, chosen, surfaces, casters, moved, .. } = &self.bodies;
+        if scenery.view.shadows {
+            let camera = scenery.camera;
+            let seen = (casters, camera.target, camera.distance);
+            self.shadows.cast(&self.context, programs, (crowd, surfaces, *moved), seen);
+        } else {
+            self.shadows.clear();
+        }
+        self.outline.prepare(&self.context, programs, eye, (chosen, surfaces));
+    }
+
+    /// What is drawn on the screen.
+    fn fill(&mut self, eye: &Eye, scenery: &Scenery<'_>) {
+        let Ok(programs) = &self.programs else { return };
+        let light = Light::of(scenery.view.theme);
+        let Bodies { crowd, chosen, surfaces, planes, reach, .. } = &self.bodies;
+        let haze_distance = HAZE * (reach + scenery.camera.distance);
+        self.ground.draw_sky(programs, eye, light);
+        let lit = (light, &self.shadows, haze_distance);
+        self.ground.draw_planes(programs, eye, lit, (scenery.view, planes));
+        let program = &programs.body;
+        light.tell(program, eye, &self.shadows, haze_distance);
+        program.use_uniform("viewProjection", eye.view_projection);
+        let (normal, distance) = self.slice.plane().unwrap_or((Vec3::Y, f32::MAX));
+        program.use_uniform("cut", vector(normal).extend(distance));
+        crowd.draw(program, SOLID, eye.viewport, surfaces);
+        let corners = &self.ground.corners;
+        self.slice.draw(programs, eye, corners);
+        self.ghosts.draw(programs, eye, surfaces);
+        self.line_drawer.draw(programs, eye, &mut self.lines);
+        if !chosen.is_empty() {
+            self.outline.draw(programs, eye, corners, light.outline);
         }
     }
 }

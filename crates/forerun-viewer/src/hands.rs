@@ -1,56 +1,209 @@
 //! Hands: what the mouse does to the camera and to bodies.
 
 mod camera_hand;
+mod drag;
+mod missile;
+mod sight;
+mod throw;
 
-use three_d::Event;
+use forerun::{Change, Shape};
+use three_d::{Event, Modifiers, MouseButton};
 
 use crate::camera::Camera;
+use crate::draw::Extras;
 use crate::input::Input;
 use crate::session::Play;
-use crate::view::View;
+use crate::view::{Grip, Tool, View};
+pub(crate) use camera_hand::take_flight;
+use drag::Drag;
+use missile::Missiles;
+use sight::Sight;
 
-/// What a press of the left button does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tool {
-    /// Picks a body, and drags it by a spring.
+/// What the left button is held down for.
+#[derive(Debug, Default)]
+enum Doing {
     #[default]
-    Select,
-    /// Throws something.
-    Throw,
-    /// Pushes a body.
-    Push,
+    Nothing,
+    Dragging(Drag),
+    /// A throw is aimed.
+    Aiming,
 }
 
 /// The user's hands.
 #[derive(Debug, Default)]
 pub struct Hands {
-    /// What a press of the left button does.
-    pub tool: Tool,
+    /// What is shown of what the hands do.
+    pub extras: Extras,
+    doing: Doing,
+    /// Where the mouse is. Pixels from the left and the bottom.
+    pointer: Option<[f32; 2]>,
+    modifiers: Modifiers,
+    missiles: Missiles,
+    /// The scene that the hands are in.
+    opened: u64,
 }
 
 impl Hands {
-    /// Takes what the mouse did since the last picture.
-    pub fn take(&mut self, input: &mut Input, play: &mut Play, camera: &mut Camera, _view: &View) {
-        let height = input.viewport.height.max(1) as f32;
-        let aspect = input.viewport.width as f32 / height;
+    /// Takes what the mouse did since the last picture. `opened` is the number of the scene.
+    pub fn take(
+        &mut self,
+        input: &mut Input,
+        (play, opened): (&mut Play, u64),
+        camera: &mut Camera,
+        view: &View,
+    ) {
+        if self.opened != opened {
+            (self.doing, self.opened) = (Doing::Nothing, opened);
+        }
+        self.extras = Extras::default();
+        let size = [input.viewport.width.max(1) as f32, input.viewport.height.max(1) as f32];
         for event in &mut input.events {
-            if let Event::MousePress {
-                button: three_d::MouseButton::Left,
+            self.take_event(event, play, &Sight::new(camera, size), view);
+        }
+        camera_hand::take(input, camera);
+        self.go_on(play, &Sight::new(camera, size), view);
+    }
+
+    fn take_event(&mut self, event: &mut Event, play: &mut Play, sight: &Sight<'_>, view: &View) {
+        match event {
+            Event::MousePress {
+                button: MouseButton::Left,
                 position,
+                modifiers,
                 handled: handled @ false,
-                ..
-            } = event
-                && self.tool == Tool::Select
-            {
-                let at = [position.x / (height * aspect) * 2.0 - 1.0, position.y / height * 2.0 - 1.0];
-                let ray = camera.ray(at[0], at[1], aspect);
-                match play.picture.snapshot.cast_ray(play.picture.time_s, &ray, 1e4) {
-                    Some(hit) => play.selection.pick(hit.body),
-                    None => play.selection.clear(),
-                }
+            } => {
+                self.pointer = Some([position.x, position.y]);
+                self.modifiers = *modifiers;
+                self.press(play, sight, view);
                 *handled = true;
             }
+            Event::MouseMotion { position, modifiers, handled, .. } => {
+                self.pointer = Some([position.x, position.y]);
+                self.modifiers = *modifiers;
+                *handled |= self.is_busy();
+            }
+            // Also over a panel: what began in the picture ends with the button.
+            Event::MouseRelease { button: MouseButton::Left, position, .. } if self.is_busy() => {
+                self.pointer = Some([position.x, position.y]);
+                self.release(play, sight, view);
+            }
+            Event::ModifiersChange { modifiers } => self.modifiers = *modifiers,
+            Event::MouseLeave if !self.is_busy() => self.pointer = None,
+            _ => {}
         }
-        camera_hand::take(&mut input.events, camera, height);
     }
+
+    fn press(&mut self, play: &mut Play, sight: &Sight<'_>, view: &View) {
+        let Some(pointer) = self.pointer else { return };
+        match view.grip.tool {
+            Tool::Select => self.pick(play, sight, pointer),
+            Tool::Throw => self.doing = Doing::Aiming,
+            Tool::Push => push(play, sight, pointer, &view.grip),
+        }
+    }
+
+    /// Picks what is under the mouse, and takes hold of it. What has no end counts as nothing, but with Shift or Ctrl.
+    fn pick(&mut self, play: &mut Play, sight: &Sight<'_>, pointer: [f32; 2]) {
+        let more = self.modifiers.shift || self.modifiers.ctrl || self.modifiers.command;
+        let hit = sight.hit(play, pointer);
+        let endless = |id| play.body(id).is_some_and(|body| matches!(body.shape, Shape::HalfSpace));
+        let Some(hit) = hit.filter(|hit| more || !endless(hit.body)) else {
+            if !more {
+                play.selection.clear();
+            }
+            return;
+        };
+        if more {
+            play.selection.toggle(hit.body);
+        } else {
+            play.selection.pick(hit.body);
+        }
+        if let Some(drag) = Drag::of(play, &hit, pointer) {
+            self.doing = Doing::Dragging(drag);
+        }
+    }
+
+    /// What goes on as long as the button is held down.
+    fn go_on(&mut self, play: &mut Play, sight: &Sight<'_>, view: &View) {
+        let Some(pointer) = self.pointer else { return };
+        match &mut self.doing {
+            Doing::Dragging(drag) => {
+                if drag.go_on(play, sight, (pointer, self.modifiers.shift), &view.grip) {
+                    self.extras.grab = drag.line(play);
+                } else {
+                    self.doing = Doing::Nothing;
+                }
+            }
+            Doing::Aiming => throw::aim(&mut self.extras, play, (&mut self.missiles, view), (sight, pointer)),
+            Doing::Nothing if view.grip.tool == Tool::Throw => {}
+            Doing::Nothing => self.extras.pointed = sight.hit(play, pointer).map(|hit| hit.body),
+        }
+    }
+
+    fn release(&mut self, play: &mut Play, sight: &Sight<'_>, view: &View) {
+        let pointer = self.pointer.unwrap_or_default();
+        match std::mem::take(&mut self.doing) {
+            Doing::Dragging(mut drag) => {
+                // To where the mouse was let go, although no picture has shown it there.
+                drag.go_on(play, sight, (pointer, self.modifiers.shift), &view.grip);
+                drag.end(play);
+            }
+            Doing::Aiming => throw::release(play, (&mut self.missiles, view), sight, pointer),
+            Doing::Nothing => {}
+        }
+    }
+
+    /// Leaves off what the button is held down for, as if it had not begun; whether there was something.
+    pub fn cancel(&mut self, play: &mut Play) -> bool {
+        match std::mem::take(&mut self.doing) {
+            Doing::Dragging(drag) => drag.cancel(play),
+            Doing::Aiming => play.forget_preview(),
+            Doing::Nothing => return false,
+        }
+        true
+    }
+
+    /// Brings a body in, at the point that the camera looks at.
+    pub fn add(&mut self, play: &mut Play, camera: &Camera, grip: &Grip) {
+        let sight = Sight::new(camera, [1.0, 1.0]);
+        match self.missiles.def(play, grip) {
+            Ok(mut def) => {
+                let radius = missile::radius_of(&def);
+                def.pose.position = match sight.hit(play, [0.5, 0.5]) {
+                    Some(hit) => hit.point + hit.normal * radius,
+                    None => camera.target,
+                };
+                let added = play.add_all("add", vec![def]);
+                play.selection.pick_coming(added);
+            }
+            Err(message) => play.notice = Some(message),
+        }
+    }
+
+    /// The body that is dragged.
+    #[must_use]
+    pub fn dragged(&self) -> Option<forerun::BodyId> {
+        match &self.doing {
+            Doing::Dragging(drag) => drag.moves().then(|| drag.body()),
+            _ => None,
+        }
+    }
+
+    /// Whether a throw is aimed.
+    #[must_use]
+    pub fn is_aiming(&self) -> bool {
+        matches!(self.doing, Doing::Aiming)
+    }
+
+    fn is_busy(&self) -> bool {
+        !matches!(self.doing, Doing::Nothing)
+    }
+}
+
+/// Pushes the body under the mouse, away from the eye.
+fn push(play: &mut Play, sight: &Sight<'_>, pointer: [f32; 2], grip: &Grip) {
+    let Some(hit) = sight.hit(play, pointer) else { return };
+    let Some(body) = play.body(hit.body).filter(|body| body.is_dynamic()) else { return };
+    let impulse = sight.ray(pointer).direction * (grip.push / body.inverse_mass);
+    play.change(Change::Push { body: hit.body, impulse, at_point: Some(hit.point) });
 }

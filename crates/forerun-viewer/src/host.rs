@@ -9,11 +9,22 @@ use forerun::{Decoupled, Scene};
 mod native;
 #[cfg(target_arch = "wasm32")]
 mod web;
+#[cfg(target_arch = "wasm32")]
+mod web_files;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{Host, Link, Starting};
+pub use native::{
+    Choosing, FilmWriter, Host, Link, Saving, Starting, Watch, choose_scene, load_settings, save_picture,
+    save_settings, save_text, watch,
+};
+
 #[cfg(target_arch = "wasm32")]
 pub use web::{Host, Link, Starting};
+#[cfg(target_arch = "wasm32")]
+pub use web_files::{
+    Choosing, FilmWriter, Saving, Watch, choose_scene, load_settings, save_picture, save_settings, save_text,
+    watch,
+};
 
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,15 +8,20 @@
 
 pub mod actions;
 pub mod camera;
+pub mod capture;
+pub mod desk;
 pub mod draw;
 pub mod hands;
 pub mod host;
 pub mod input;
+pub mod keeper;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
 pub mod panels;
 pub mod report;
+pub mod series;
 pub mod session;
+pub mod settings;
 pub mod tessellate;
 pub mod view;
 pub mod viewer;
@@ -26,4 +31,4 @@ pub mod window;
 pub use host::SceneSource;
 pub use viewer::Viewer;
 #[cfg(not(target_arch = "wasm32"))]
-pub use window::{NoWindow, WindowOptions, open};
+pub use window::{NoWindow, Screenshot, WindowOptions, open};

@@ -68,6 +68,17 @@ pub enum Theme {
     Light,
 }
 
+impl Theme {
+    /// The other one.
+    #[must_use]
+    pub const fn other(self) -> Theme {
+        match self {
+            Theme::Dark => Theme::Light,
+            Theme::Light => Theme::Dark,
+        }
+    }
+}
+
 /// Transparent pictures of what is still to come (the dissertation's figure 5.7).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -112,6 +123,31 @@ pub struct Overlays {
     pub field_height: f32,
 }
 
+/// What a press of the left button does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tool {
+    /// Picks a body, and drags it by a spring.
+    #[default]
+    Select,
+    /// Throws something.
+    Throw,
+    /// Pushes a body.
+    Push,
+}
+
+impl Tool {
+    /// As menus and scripts say it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Tool::Select => "select",
+            Tool::Throw => "throw",
+            Tool::Push => "push",
+        }
+    }
+}
+
 /// What is thrown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -131,6 +167,8 @@ pub enum Missile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Grip {
+    /// What a press of the left button does.
+    pub tool: Tool,
     /// What is thrown.
     pub missile: Missile,
     /// How large: the radius of a ball. Metres.
@@ -147,7 +185,15 @@ pub struct Grip {
 
 impl Default for Grip {
     fn default() -> Self {
-        Grip { missile: Missile::Ball, size: 0.3, speed: 15.0, density: 1000.0, frequency: 3.0, push: 3.0 }
+        Grip {
+            tool: Tool::Select,
+            missile: Missile::Ball,
+            size: 0.3,
+            speed: 15.0,
+            density: 1000.0,
+            frequency: 3.0,
+            push: 3.0,
+        }
     }
 }
 
@@ -155,6 +201,8 @@ impl Default for Grip {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Open {
+    /// The panel of tools.
+    pub tools: bool,
     /// The panel of the selection.
     pub inspector: bool,
     /// The plots.
@@ -165,7 +213,7 @@ pub struct Open {
 
 impl Default for Open {
     fn default() -> Self {
-        Open { inspector: true, plots: false, help: false }
+        Open { tools: true, inspector: true, plots: false, help: false }
     }
 }
 

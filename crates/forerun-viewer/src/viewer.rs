@@ -1,21 +1,27 @@
 //! Viewer: one picture after another, as a short story: take what happened, show, do what was asked, draw.
 
-use forerun::Change;
+mod keeping;
+
 use three_d::{Context, Event, FrameInput, FrameOutput, GUI};
 
-use crate::actions::{Action, action_of};
+use crate::actions::Action;
 use crate::camera::Camera;
-use crate::draw::Painter;
-use crate::hands::{Hands, Tool};
+use crate::capture::{Capture, Want};
+use crate::desk::{Desk, keys_of};
+use crate::draw::{Painter, Scenery, needs_inspection, write_labels};
+use crate::hands::{Hands, take_flight};
 use crate::host::{Host, SceneSource};
 use crate::input::Input;
-use crate::panels::{self, Wish};
-use crate::report::Report;
-use crate::session::{Play, Session};
+use crate::keeper::Keeper;
+use crate::panels::{Board, Panels, Wish};
+use crate::report::{Report, Reported, Window};
+use crate::series::Series;
+use crate::session::{Session, Stage};
+use crate::settings::Settings;
 use crate::view::View;
 
-/// Half and double speed.
-const SPEED_FACTOR: f64 = 2.0;
+/// A little larger or smaller text.
+const SCALE_FACTOR: f32 = 1.1;
 
 /// The whole viewer, but the window that it is in.
 pub struct Viewer {
@@ -25,46 +31,64 @@ pub struct Viewer {
     pub view: View,
     /// Where it is seen from.
     pub camera: Camera,
+    /// What is remembered.
+    pub keeper: Keeper,
+    /// What plots show.
+    pub series: Series,
+    /// Screenshots and films.
+    pub capture: Capture,
     hands: Hands,
+    panels: Panels,
     painter: Painter,
     gui: GUI,
+    context: Context,
     /// The scene that the camera has looked at as a whole.
     framed: u64,
     pictures: u64,
+    window: Window,
+    /// The session's clock: the window's, but while a film is taken it waits for it. Seconds.
+    clock_s: f64,
+    /// Whether this picture belongs into the film.
+    filmed: bool,
 }
 
 impl Viewer {
     /// A viewer that begins with this scene and draws into windows of this context.
     #[must_use]
-    pub fn new(context: &Context, host: Host, source: SceneSource, view: View) -> Viewer {
+    pub fn new(context: &Context, host: Host, source: SceneSource, settings: Settings) -> Viewer {
         Viewer {
             session: Session::new(host, source),
-            view,
+            view: settings.view,
             camera: Camera::default(),
+            keeper: Keeper::new(settings),
+            series: Series::default(),
+            capture: Capture::default(),
             hands: Hands::default(),
+            panels: Panels::default(),
             painter: Painter::new(context),
             gui: GUI::new(context),
+            context: context.clone(),
             framed: 0,
             pictures: 0,
+            window: Window::default(),
+            clock_s: 0.0,
+            filmed: false,
         }
     }
 
     /// One picture.
     pub fn picture(&mut self, mut frame: FrameInput) -> FrameOutput {
         let mut input = Input::of(&mut frame);
-        self.session.show(input.real_s);
-        self.frame_new_scene();
+        self.window = Window { viewport: input.viewport, pixels_per_point: input.pixels_per_point };
+        self.show(&input);
         let wishes = self.show_panels(&mut input);
-        for wish in wishes {
-            match wish {
-                Wish::Do(action) => self.perform(action),
-                Wish::Open(source) => self.session.open(source),
-            }
+        wishes.into_iter().for_each(|wish| self.grant(wish));
+        // Keys that fly mean nothing else while they do.
+        take_flight(&mut input, &mut self.camera);
+        for action in keys_of(&mut input) {
+            self.perform(action);
         }
-        self.take_keys(&mut input);
-        if let Some(play) = self.session.play_mut() {
-            self.hands.take(&mut input, play, &mut self.camera, &self.view);
-        }
+        self.desk().take_mouse(&mut input);
         self.draw(&frame);
         self.pictures += 1;
         FrameOutput::default()
@@ -73,110 +97,147 @@ impl Viewer {
     /// The state as plain values, for scripts.
     #[must_use]
     pub fn report(&self) -> Report {
-        Report::of(&self.session, &self.view, self.pictures)
+        Report::of(&Reported {
+            session: &self.session,
+            view: &self.view,
+            hands: &self.hands,
+            camera: &self.camera,
+            window: self.window,
+            pictures: self.pictures,
+        })
+    }
+
+    /// As the window's title says it.
+    #[must_use]
+    pub fn title(&self) -> String {
+        format!("forerun: {}", self.session.source.name())
+    }
+
+    /// Whether the next picture is like this one, unless something happens.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        let resting = match &self.session.stage {
+            Stage::Playing(play) => {
+                let snapshot = &play.picture.snapshot;
+                let reached = snapshot.horizon() == snapshot.valid_to();
+                play.paused && !play.rewinding && reached && self.session.coming().is_none()
+            }
+            Stage::Loading(_) => false,
+            Stage::Failed(_) => true,
+        };
+        resting && !self.capture.is_busy()
     }
 
     /// Does what a key, a menu or a button asks for.
     pub fn perform(&mut self, action: Action) {
         match action {
-            Action::Reload => self.session.reload(),
-            Action::Help => self.view.open.help ^= true,
-            Action::Plots => self.view.open.plots ^= true,
-            Action::Inspector => self.view.open.inspector ^= true,
-            Action::Ghosts => self.view.ghosts.shown ^= true,
-            Action::Contacts => self.view.overlays.contacts ^= true,
-            Action::NextColour => self.view.colour_by = self.view.colour_by.next(),
-            Action::SelectTool => self.hands.tool = Tool::Select,
-            Action::ThrowTool => self.hands.tool = Tool::Throw,
-            Action::PushTool => self.hands.tool = Tool::Push,
-            Action::Focus => self.focus(false),
-            Action::FrameAll => self.focus(true),
-            action => {
-                if let Some(play) = self.session.play_mut() {
-                    perform_in(play, action);
-                }
+            Action::Open => self.panels.choose_file(),
+            Action::Scenes => self.panels.toggle_scenes(),
+            Action::Screenshot => self.capture.wants.push(Want::Window),
+            Action::BareScreenshot => self.capture.wants.push(Want::Bare),
+            Action::Film => {
+                let Window { viewport, .. } = self.window;
+                let size = [viewport.width, viewport.height];
+                self.capture.toggle_film(&self.keeper.settings.film, &self.session, size);
             }
+            Action::HoldPlots => self.series.held ^= true,
+            Action::Theme => self.view.theme = self.view.theme.other(),
+            Action::Larger => Settings::rescale(&mut self.view, SCALE_FACTOR),
+            Action::Smaller => Settings::rescale(&mut self.view, 1.0 / SCALE_FACTOR),
+            action => self.desk().perform(action),
+        }
+    }
+
+    fn desk(&mut self) -> Desk<'_> {
+        let Viewer { session, view, camera, hands, .. } = self;
+        Desk { session, view, camera, hands }
+    }
+
+    /// What physics has by now, for the picture and for the plots.
+    fn show(&mut self, input: &Input) {
+        self.turn_clock(input.elapsed_s);
+        self.session.show(self.clock_s);
+        let opened = self.session.opened;
+        if let Some(play) = self.session.play_mut() {
+            if needs_inspection(&self.view) {
+                play.ask_inspection();
+            }
+            self.series.take(play, opened, input.real_s);
+        }
+        self.keeper.look(&mut self.session, &self.view, input.real_s);
+        self.capture.listen();
+        self.frame_new_scene();
+    }
+
+    fn grant(&mut self, wish: Wish) {
+        match wish {
+            Wish::Do(action) => self.perform(action),
+            Wish::Open(source) => self.session.open(source),
+            Wish::Keep(want) => self.capture.wants.push(want),
+            Wish::KeepNumbers => self.keep_numbers(),
         }
     }
 
     fn show_panels(&mut self, input: &mut Input) -> Vec<Wish> {
-        let Viewer { gui, session, view, .. } = self;
+        let Viewer { gui, session, view, camera, hands, keeper, series, capture, panels, .. } = self;
         let mut wishes = Vec::new();
         let scale = input.pixels_per_point * view.scale;
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
-            wishes = panels::show(ui, session, view);
+            if let Some(scenery) = scenery(session, camera, view, hands) {
+                write_labels(ui.ctx(), &scenery);
+            }
+            let mut board = Board { session, view, settings: &mut keeper.settings, series, capture };
+            wishes = panels.show(ui, &mut board);
         });
-        wishes
-    }
-
-    fn take_keys(&mut self, input: &mut Input) {
-        for event in &mut input.events {
-            if let Event::KeyPress { kind, modifiers, handled: handled @ false } = event
-                && let Some(action) = action_of(*kind, *modifiers)
-            {
-                *handled = true;
-                self.perform(action);
+        // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.
+        if gui.context().is_pointer_over_egui() {
+            for event in &mut input.events {
+                if let Event::MousePress { handled, .. } | Event::MouseWheel { handled, .. } = event {
+                    *handled = true;
+                }
             }
         }
+        wishes
     }
 
     /// A scene that has just begun is looked at as a whole.
     fn frame_new_scene(&mut self) {
         let opened = self.session.opened;
         if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {
-            self.focus(true);
+            self.perform(Action::FrameAll);
+            self.camera.arrive();
             self.framed = opened;
-        }
-    }
-
-    fn focus(&mut self, everything: bool) {
-        let Some(play) = self.session.play() else { return };
-        let bodies = if everything { &[] } else { play.selection.bodies() };
-        if let Some((min, max)) = play.bounds(bodies) {
-            self.camera.look_at(0.5 * (min + max), 0.5 * (max - min).length());
         }
     }
 
     fn draw(&mut self, frame: &FrameInput) {
         let target = frame.screen();
-        if let Some(play) = self.session.play() {
-            self.painter.draw(&target, frame.viewport, play, self.session.opened, &self.camera, &self.view);
+        if self.session.play().is_some() {
+            self.draw_scene(&target, frame.viewport);
         } else {
             target.clear(three_d::ClearState::color_and_depth(0.2, 0.22, 0.25, 1.0, 1.0));
         }
+        self.keep_picture(&target, true);
         // Only a panic in the library could make this fail.
         let _ = target.write(|| self.gui.render());
+        self.keep_picture(&target, false);
     }
 }
 
-/// Actions that need a scene.
-fn perform_in(play: &mut Play, action: Action) {
-    let snapshot = play.picture.snapshot.clone();
-    let seconds = snapshot.frame_seconds();
-    match action {
-        Action::PlayPause => play.set_paused(!play.paused),
-        Action::StepForward => play.step(1),
-        Action::StepBack => play.step(-1),
-        Action::JumpForward => play.seek(play.picture.time_s + 1.0),
-        Action::JumpBack => play.seek(play.picture.time_s - 1.0),
-        Action::GoToStart => play.seek(snapshot.oldest().seconds(seconds)),
-        Action::GoToHorizon => play.seek(snapshot.horizon().seconds(seconds)),
-        Action::Slower => play.set_speed(play.speed / SPEED_FACTOR),
-        Action::Faster => play.set_speed(play.speed * SPEED_FACTOR),
-        Action::Rewind => play.set_rewinding(!play.rewinding),
-        Action::Undo => play.undo(),
-        Action::Redo => play.redo(),
-        Action::Deselect => play.selection.clear(),
-        Action::SelectAll => {
-            let moving = |id: &forerun::BodyId| play.body(*id).is_some_and(|body| body.is_dynamic());
-            let bodies: Vec<_> = play.samples.iter().map(|(id, _)| *id).filter(moving).collect();
-            play.selection.pick_all(bodies);
-        }
-        Action::Delete => {
-            for body in play.selection.bodies().to_vec() {
-                play.change(Change::Remove { body });
-            }
-        }
-        _ => {}
-    }
+/// What there is to draw, when a scene plays.
+fn scenery<'a>(
+    session: &'a Session,
+    camera: &'a Camera,
+    view: &'a View,
+    hands: &'a Hands,
+) -> Option<Scenery<'a>> {
+    let play = session.play()?;
+    Some(Scenery {
+        play,
+        scene_number: session.opened,
+        camera,
+        view,
+        extras: &hands.extras,
+        inside: play.inspection().filter(|_| needs_inspection(view)),
+    })
 }

@@ -1,16 +1,22 @@
 //! Window: the system's window and its events; what comes of them is the viewer's.
 
+mod errand;
+mod pace;
+
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 use three_d::{FrameInputGenerator, SurfaceSettings, WindowedContext};
+use winit::dpi::LogicalSize;
 use winit::event::{Event, WindowEvent};
 use winit::event_loop::{ControlFlow, EventLoop, EventLoopBuilder};
-use winit::window::WindowBuilder;
+use winit::window::{Window, WindowBuilder};
 
-use crate::host::{Host, SceneSource};
-use crate::view::View;
+use self::errand::Errand;
+use self::pace::WindowPace;
+use crate::host::{self, Host, SceneSource};
+use crate::settings::{Settings, WindowPlace};
 use crate::viewer::Viewer;
 
 /// How the window begins.
@@ -24,6 +30,21 @@ pub struct WindowOptions {
     pub size: Option<[u32; 2]>,
     /// A file that the state is written to, as JSON, whenever it changes: for scripts.
     pub report: Option<PathBuf>,
+    /// Display time to begin at. Seconds.
+    pub time_s: Option<f64>,
+    /// Whether display time stands still at first.
+    pub paused: bool,
+    /// Keeps one picture and ends.
+    pub screenshot: Option<Screenshot>,
+}
+
+/// One picture of the window for a file, after which the viewer ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Screenshot {
+    /// The PNG file.
+    pub path: PathBuf,
+    /// How long after the scene began. Seconds.
+    pub after_s: f64,
 }
 
 /// Why there is no window.
@@ -52,30 +73,52 @@ impl NoWindow {
 /// When there is no display, or it cannot draw with OpenGL.
 pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
     let events = event_loop()?;
-    let window = WindowBuilder::new().with_title("forerun");
-    let window = match options.size {
-        Some([width, height]) => window.with_inner_size(winit::dpi::LogicalSize::new(width, height)),
-        None => window.with_maximized(true),
+    let settings = Settings::of_text(&host::load_settings().unwrap_or_default());
+    let place = match options.size {
+        Some(size) => WindowPlace { size, maximized: false },
+        None => settings.window,
     };
-    let window = window.build(&events).map_err(|error| NoWindow::because(error.to_string()))?;
+    let [width, height] = place.size;
+    let window = WindowBuilder::new()
+        .with_title("forerun")
+        .with_min_inner_size(LogicalSize::new(480, 320))
+        .with_inner_size(LogicalSize::new(width, height))
+        .with_maximized(place.maximized)
+        .build(&events)
+        .map_err(|error| NoWindow::because(error.to_string()))?;
     let context = context_of(&window)?;
-    let mut viewer = Viewer::new(&context, options.host, options.source, View::default());
+    let mut viewer = Viewer::new(&context, options.host, options.source, settings);
+    if options.screenshot.is_some() {
+        viewer.keeper.silent = true;
+        viewer.keeper.settings.greeted = true;
+    }
     let mut inputs = FrameInputGenerator::from_winit_window(&window);
     let mut reporter = options.report.map(Reporter::new);
+    let mut errand =
+        Errand { time_s: options.time_s, paused: options.paused, screenshot: options.screenshot };
+    // A size that was asked for is not what the user made of the window.
+    let remembers = options.size.is_none();
+    let mut title = String::new();
+    let mut pace = WindowPace::new();
     events.run(move |event, _, control| match event {
-        Event::MainEventsCleared => window.request_redraw(),
+        Event::MainEventsCleared if pace.is_due() => window.request_redraw(),
+        Event::MainEventsCleared => *control = pace.wait(),
         Event::RedrawRequested(_) => {
             let output = viewer.picture(inputs.generate(&context));
+            let done = errand.run(&mut viewer);
             if let Some(reporter) = &mut reporter {
                 reporter.write(&viewer);
             }
-            *control = if output.exit || context.swap_buffers().is_err() {
-                ControlFlow::Exit
-            } else {
-                ControlFlow::Poll
-            };
+            if viewer.title() != title {
+                title = viewer.title();
+                window.set_title(&title);
+            }
+            pace.drawn(viewer.is_still() || window.is_minimized() == Some(true));
+            let ended = output.exit || done || context.swap_buffers().is_err();
+            *control = if ended { ControlFlow::Exit } else { pace.wait() };
         }
         Event::WindowEvent { event, .. } => {
+            pace.stir();
             inputs.handle_winit_window_event(&event);
             match event {
                 WindowEvent::Resized(size) => context.resize(size),
@@ -85,8 +128,20 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
                 _ => {}
             }
         }
+        Event::LoopDestroyed => {
+            if remembers {
+                viewer.keeper.place(place_of(&window));
+            }
+            viewer.keeper.keep(&viewer.view);
+        }
         _ => {}
     });
+}
+
+fn place_of(window: &Window) -> WindowPlace {
+    let size = window.inner_size().to_logical::<f64>(window.scale_factor());
+    let size = [size.width.round() as u32, size.height.round() as u32];
+    WindowPlace { size, maximized: window.is_maximized() }
 }
 
 /// The library panics where there is no display, and says why on the way.

@@ -92,6 +92,18 @@ pub(crate) struct ViewArgs {
     /// Width and height of the window; without it the window is as large as the screen
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
+    /// Display time to begin at, in seconds
+    #[arg(long, value_name = "SECONDS", value_parser = time, allow_negative_numbers = true)]
+    pub(crate) time: Option<f64>,
+    /// Begin with display time standing still
+    #[arg(long)]
+    pub(crate) paused: bool,
+    /// Keep a picture of the window in this file and end
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) screenshot: Option<PathBuf>,
+    /// When that picture is taken, in seconds after the scene began
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = time, allow_negative_numbers = true, requires = "screenshot")]
+    pub(crate) after: f64,
     /// Keep the state of the viewer in this file, as JSON, for scripts
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,

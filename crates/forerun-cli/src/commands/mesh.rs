@@ -37,6 +37,8 @@ struct MeshReport {
     shells: usize,
     /// `closed`, `mended` or `open`.
     enclosure: &'static str,
+    /// Of a mended one, what keeps it from being closed, in words.
+    why_not_closed: Option<String>,
     /// What was mended, in words.
     repairs: String,
     min_m: [f32; 3],
@@ -185,6 +187,7 @@ impl Made {
                 Enclosure::Mended => "mended",
                 Enclosure::Open => "open",
             },
+            why_not_closed: (mesh.enclosure == Enclosure::Mended).then(|| mesh.repairs.why_not_closed()),
             repairs: mesh.repairs.to_string(),
             min_m: min.to_array(),
             max_m: max.to_array(),
@@ -262,9 +265,9 @@ fn print_report(report: &MeshReport) -> Result<(), Failure> {
     line("mended", report.repairs.clone())?;
     line(
         "surface",
-        match report.enclosure {
-            "closed" => "closed (watertight)".to_owned(),
-            "mended" => "not quite closed; what is inside is clear all the same".to_owned(),
+        match (report.enclosure, &report.why_not_closed) {
+            ("closed", _) => "closed (watertight)".to_owned(),
+            (_, Some(why)) => format!("not quite closed: {why}; what is inside is clear all the same"),
             _ => "open: for fixed bodies".to_owned(),
         },
     )?;

@@ -30,6 +30,8 @@ struct FigureReport {
     limit: String,
     /// `pass`, `miss`, `reported` (it has no limit), or, of a time, `in_time` or `too_slow` on this machine.
     verdict: &'static str,
+    /// Of a miss, why it is one; none where that is not known.
+    cause: Option<String>,
 }
 
 /// `forerun validate`.
@@ -67,6 +69,7 @@ impl ValidateReport {
     fn add(&mut self, case: &'static str, figure: Figure) {
         self.judged += usize::from(figure.verdict.counts());
         self.passed += usize::from(figure.verdict == Verdict::Pass);
+        let cause = figure.cause(case);
         let Figure { name, value, limit, verdict } = figure;
         self.figures.push(FigureReport {
             case,
@@ -74,6 +77,7 @@ impl ValidateReport {
             value,
             limit: limit.to_string(),
             verdict: verdict.key(),
+            cause,
         });
     }
 
@@ -88,7 +92,8 @@ impl ValidateReport {
 
 /// Prints a figure above the bar, not through it.
 fn print_row(bar: &ProgressBar, case: &str, figure: &Figure) -> Result<(), Failure> {
-    let (digits, verdict) = (figure.digits(), figure.verdict.word());
+    let (digits, word) = (figure.digits(), figure.verdict.word());
+    let verdict = figure.cause(case).map_or_else(|| word.to_owned(), |cause| format!("{word}, {cause}"));
     bar.suspend(|| print(&format!("| {case} | {} | {digits} | {} | {verdict} |", figure.name, figure.limit)))
 }
 

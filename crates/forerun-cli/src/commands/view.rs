@@ -3,7 +3,7 @@
 use forerun::Scene;
 use forerun::scene::MeshBaking;
 use forerun_viewer::host::Host;
-use forerun_viewer::{NoWindow, SceneSource, WindowOptions};
+use forerun_viewer::{NoWindow, SceneSource, Screenshot, WindowOptions};
 
 use crate::args::ViewArgs;
 use crate::cache;
@@ -28,8 +28,11 @@ pub(crate) fn open_first() -> Result<(), NoWindow> {
 fn open(args: &ViewArgs, scene: &str) -> Result<(), NoWindow> {
     forerun_viewer::open(WindowOptions {
         source: SceneSource::of(scene),
-        host: Host { baking: MeshBaking { cache: cache::of_meshes(), watch: None } },
+        host: Host::new(MeshBaking { cache: cache::of_meshes(), watch: None }),
         size: args.size,
         report: args.report.clone(),
+        time_s: args.time,
+        paused: args.paused,
+        screenshot: args.screenshot.clone().map(|path| Screenshot { path, after_s: args.after }),
     })
 }

@@ -124,10 +124,17 @@ impl MeshDraft {
 
     fn cover(&mut self) {
         self.covers = covers(&self.vertices, &self.triangles);
-        self.repairs.crowded_edges = crowded_edges(&self.triangles);
-        self.repairs.hole_edges = self.covers.triangles.len() as u32;
-        self.repairs.first_hole =
-            self.covers.triangles.first().map(|t| [t[0], t[1]].map(|v| self.vertices[v as usize]));
+        let (crowded_edges, first_crowded) = crowded_edges(&self.triangles);
+        let first_cover = self.covers.triangles.first().map(|t| [t[0], t[1]]);
+        let ends = |edge: Option<[u32; 2]>| edge.map(|edge| edge.map(|v| self.vertices[v as usize]));
+        self.repairs = MeshRepairs {
+            holes: self.covers.apexes.len() as u32,
+            hole_edges: self.covers.triangles.len() as u32,
+            first_hole: ends(first_cover),
+            crowded_edges,
+            first_crowded: ends(first_crowded),
+            ..self.repairs
+        };
     }
 
     /// Signed volume (m³) and area (m²), covers of holes included.

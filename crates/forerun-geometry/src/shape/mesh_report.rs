@@ -38,14 +38,18 @@ pub struct MeshRepairs {
     pub turned: bool,
     /// Triangles that were turned round because their neighbours face the other way, or because their whole shell faced inwards without being a cavity.
     pub flipped_triangles: u32,
-    /// Edges of holes, which were covered.
+    /// Holes, which were covered. Rims that share a vertex are those of one.
+    pub holes: u32,
+    /// Edges of the holes.
     pub hole_edges: u32,
-    /// Ends of the first of them. Metres.
+    /// Ends of the first of those edges. Metres.
     pub first_hole: Option<[Vec3; 2]>,
     /// Area of what covers the holes. Square metres.
     pub cover_area: f32,
     /// Edges of more than two triangles.
     pub crowded_edges: u32,
+    /// Ends of the first of them. Metres.
+    pub first_crowded: Option<[Vec3; 2]>,
     /// Triangles that are, at least in part, inside of the volume that others bound. What is inside does not count.
     pub inner_triangles: u32,
     /// Triangles with nothing on either side: sheets that do not count.
@@ -58,6 +62,47 @@ impl MeshRepairs {
     pub fn is_none(&self) -> bool {
         *self == MeshRepairs::default()
     }
+
+    /// What keeps a mesh with these from being [closed](Enclosure::Closed) where it is [mended](Enclosure::Mended), in words: holes, edges of
+    /// more than two triangles, walls that are not between inside and outside.
+    #[must_use]
+    pub fn why_not_closed(&self) -> String {
+        let mut reasons = Vec::new();
+        if let Some(first) = self.first_hole {
+            reasons.push(format!("{}, the first {}", self.holes_in_words(), between(first)));
+        }
+        if let Some(first) = self.first_crowded {
+            let edges = counted(self.crowded_edges, "edge", "edges");
+            reasons.push(format!("{edges} of more than two triangles, the first {}", between(first)));
+        }
+        if self.inner_triangles > 0 {
+            let triangles = counted(self.inner_triangles, "triangle", "triangles");
+            reasons.push(format!("{triangles} at least partly inside of other parts"));
+        }
+        if self.sheet_triangles > 0 {
+            let triangles = counted(self.sheet_triangles, "triangle", "triangles");
+            reasons.push(format!("{triangles} of sheets without thickness"));
+        }
+        if reasons.is_empty() {
+            // Neither holes nor walls in the wrong place: then triangles were found to cross.
+            reasons.push("triangles touch or cross each other".to_owned());
+        }
+        reasons.join("; ")
+    }
+
+    fn holes_in_words(&self) -> String {
+        let (holes, edges) =
+            (counted(self.holes, "hole", "holes"), counted(self.hole_edges, "edge", "edges"));
+        format!("{holes} with {edges}")
+    }
+}
+
+fn counted(n: u32, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+fn between([a, b]: [Vec3; 2]) -> String {
+    format!("between {a} and {b}")
 }
 
 impl fmt::Display for MeshRepairs {
@@ -77,11 +122,8 @@ impl fmt::Display for MeshRepairs {
         if self.turned {
             notes.push("all triangles faced inwards and were turned round".to_owned());
         }
-        if let Some([a, b]) = self.first_hole {
-            notes.push(format!(
-                "holes with {} edges covered ({:.3e} m²; the first edge is between {a} and {b})",
-                self.hole_edges, self.cover_area
-            ));
+        if self.holes > 0 {
+            notes.push(format!("{} covered ({:.3e} m²)", self.holes_in_words(), self.cover_area));
         }
         if notes.is_empty() { write!(f, "nothing mended") } else { write!(f, "{}", notes.join(", ")) }
     }
@@ -148,7 +190,6 @@ pub enum MeshError {
 
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let between = |[a, b]: &[Vec3; 2]| format!("the first is between {a} and {b}");
         match self {
             MeshError::Empty { dropped: 0 } => write!(f, "the mesh has no triangles"),
             MeshError::Empty { dropped } => {
@@ -167,19 +208,19 @@ impl fmt::Display for MeshError {
             ),
             MeshError::Open { edges, first } => write!(
                 f,
-                "the mesh is not closed: {edges} edges have a triangle on one side only, {}; close the holes (weld vertices that \
+                "the mesh is not closed: {edges} edges have a triangle on one side only, the first {}; close the holes (weld vertices that \
                  should be one), or use it for a fixed body as an open mesh",
-                between(first)
+                between(*first)
             ),
             MeshError::Twisted { edges, first } => write!(
                 f,
-                "{edges} edges join triangles that face opposite ways, {}; give all triangles the same winding",
-                between(first)
+                "{edges} edges join triangles that face opposite ways, the first {}; give all triangles the same winding",
+                between(*first)
             ),
             MeshError::Crowded { edges, first, triangles } => write!(
                 f,
-                "{edges} edges belong to more than two triangles, {} and has {triangles}; remove inner walls and doubled triangles",
-                between(first)
+                "{edges} edges belong to more than two triangles, the first {} has {triangles}; remove inner walls and doubled triangles",
+                between(*first)
             ),
             MeshError::Cell { cell } => {
                 write!(f, "cells of the distance field must have a finite size above 0 m, not {cell}")

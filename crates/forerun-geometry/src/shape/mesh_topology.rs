@@ -249,10 +249,12 @@ pub(super) fn covers(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Covers {
     Covers { apexes, triangles }
 }
 
-/// Number of edges of more than two triangles.
-pub(super) fn crowded_edges(triangles: &[[u32; 3]]) -> u32 {
+/// Number of edges of more than two triangles, and the vertices of the first.
+pub(super) fn crowded_edges(triangles: &[[u32; 3]]) -> (u32, Option<[u32; 2]>) {
     let sides = sides(triangles);
-    sides.chunk_by(|e, f| (e.0, e.1) == (f.0, f.1)).filter(|run| run.len() > 2).count() as u32
+    let mut crowded = sides.chunk_by(|e, f| (e.0, e.1) == (f.0, f.1)).filter(|run| run.len() > 2);
+    let first = crowded.next().map(|run| [run[0].0, run[0].1]);
+    (u32::from(first.is_some()) + crowded.count() as u32, first)
 }
 
 /// Normal of a triangle, twice as long as its area.

@@ -1,11 +1,11 @@
 //! Surfaces: which shapes are drawn with the same triangles, and what those are.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use forerun::{Shape, Vec3};
-use three_d::{CpuMesh, Indices, Mat4, Positions};
+use three_d::{Context, VertexBuffer};
 
-use super::convert::vector;
 use crate::tessellate::facets;
 
 /// Equal for shapes that are drawn with the same triangles, scaled.
@@ -35,18 +35,42 @@ pub(super) fn look_of(shape: &Shape) -> Option<Look> {
 }
 
 /// By how much the triangles of the look are stretched for a shape.
-pub(super) fn scale_of(shape: &Shape) -> Mat4 {
-    let scale = match shape {
+pub(super) fn scale_of(shape: &Shape) -> Vec3 {
+    match shape {
         Shape::Cuboid(cuboid) => cuboid.half_extents,
         Shape::Sphere(sphere) => Vec3::splat(sphere.radius),
         Shape::Cylinder(cylinder) => Vec3::new(cylinder.radius, cylinder.half_height, cylinder.radius),
         _ => Vec3::ONE,
-    };
-    Mat4::from_nonuniform_scale(scale.x, scale.y, scale.z)
+    }
 }
 
-/// The triangles of a shape's look.
-pub(super) fn mesh_of(shape: &Shape) -> CpuMesh {
+/// The triangles of a look, on the graphics card.
+pub(super) struct Surface {
+    pub(super) positions: VertexBuffer<[f32; 3]>,
+    pub(super) normals: VertexBuffer<[f32; 3]>,
+    pub(super) vertices: u32,
+    /// As long as it is kept, no other shape can get its memory and so its look.
+    _shape: Shape,
+}
+
+/// The surfaces that were drawn so far.
+#[derive(Default)]
+pub(super) struct Surfaces {
+    by_look: BTreeMap<Look, Surface>,
+}
+
+impl Surfaces {
+    /// Makes the surface of a shape, unless it is there.
+    pub(super) fn prepare(&mut self, context: &Context, look: Look, shape: &Shape) {
+        self.by_look.entry(look).or_insert_with(|| surface_of(context, shape));
+    }
+
+    pub(super) fn get(&self, look: Look) -> Option<&Surface> {
+        self.by_look.get(&look)
+    }
+}
+
+fn surface_of(context: &Context, shape: &Shape) -> Surface {
     let unit = match shape {
         Shape::Cuboid(_) => Shape::cuboid(Vec3::ONE),
         Shape::Sphere(_) => Shape::sphere(1.0),
@@ -55,12 +79,14 @@ pub(super) fn mesh_of(shape: &Shape) -> CpuMesh {
     };
     // Shapes of size 1 are possible.
     let facets = facets(&unit.unwrap_or(Shape::HalfSpace));
-    let positions = facets.iter().flat_map(|facet| facet.corners.map(vector)).collect();
-    let normals = facets.iter().flat_map(|facet| facet.normals.map(vector)).collect();
-    CpuMesh {
-        positions: Positions::F32(positions),
-        indices: Indices::None,
-        normals: Some(normals),
-        ..CpuMesh::default()
+    let positions: Vec<[f32; 3]> =
+        facets.iter().flat_map(|facet| facet.corners.map(|corner| corner.to_array())).collect();
+    let normals: Vec<[f32; 3]> =
+        facets.iter().flat_map(|facet| facet.normals.map(|normal| normal.to_array())).collect();
+    Surface {
+        vertices: positions.len() as u32,
+        positions: VertexBuffer::new_with_data(context, &positions),
+        normals: VertexBuffer::new_with_data(context, &normals),
+        _shape: shape.clone(),
     }
 }

@@ -1,10 +1,15 @@
-//! Play: a scene that runs, what is shown of it, and what the user does to it. Everything that changes it is a command.
+//! Play: a scene that runs, and what is shown of it. What the user does to it is in the rooms beside this one.
 
 use std::sync::Arc;
 
-use forerun::{Aabb, Body, BodyId, Change, Decoupled, DriverError, Picture, Sample, Scene, Vec3};
+use forerun::{
+    Aabb, Body, BodyId, Coupled, Decoupled, DriverError, Frame, Picture, Refusal, Sample, Scene, Vec3,
+};
 
-use super::Selection;
+use super::editing::Editing;
+use super::history::History;
+use super::questions::Questions;
+use super::selection::Selection;
 use crate::host::{Link, Started};
 
 /// How fast a rewind goes, against the clock.
@@ -15,8 +20,10 @@ const REWIND_SPEED: f64 = 1.0;
 pub struct Play {
     /// What there was at frame 0.
     pub scene: Scene,
-    /// The display's handle on the physics.
+    /// The display's handle on the physics that runs ahead. In coupled mode it stands still.
     pub driver: Decoupled,
+    /// The traditional driver, in coupled mode.
+    pub(super) coupled: Option<Coupled>,
     /// The way to the physics.
     link: Link,
     /// What was shown last.
@@ -33,6 +40,14 @@ pub struct Play {
     pub speed: f64,
     /// Whether display time runs backwards.
     pub rewinding: bool,
+    /// What the user did.
+    pub(super) history: History,
+    /// What is being changed in a panel.
+    pub(super) editing: Option<Editing>,
+    /// What physics was asked.
+    pub(super) questions: Questions,
+    /// The last body that the user brought in.
+    pub added: Option<BodyId>,
     /// The clock of the last picture. Seconds.
     real_s: f64,
 }
@@ -43,6 +58,7 @@ impl Play {
         Play {
             scene: started.scene,
             driver: started.driver,
+            coupled: None,
             link: started.link,
             picture,
             samples: Vec::new(),
@@ -51,29 +67,52 @@ impl Play {
             paused: false,
             speed: 1.0,
             rewinding: false,
+            history: History::default(),
+            editing: None,
+            questions: Questions::default(),
+            added: None,
             real_s: 0.0,
         }
     }
 
     /// Takes the picture for a time of the window's clock (seconds).
     pub(super) fn show(&mut self, real_s: f64) -> Result<(), String> {
-        self.link.carry()?;
-        if self.rewinding {
-            let back = REWIND_SPEED * self.speed * (real_s - self.real_s).max(0.0);
-            let asked = self.picture.time_s - back;
-            let shown = self.driver.seek(asked).map_err(|error| error.to_string())?;
-            self.rewinding = shown <= asked + 1e-9;
-        }
+        let since_s = (real_s - self.real_s).max(0.0);
         self.real_s = real_s;
-        self.picture = self.driver.show(real_s).map_err(|error| error.to_string())?;
         self.link.carry()?;
-        self.driver.sample_all(&self.picture, &mut self.samples);
-        for refusal in self.driver.refusals() {
-            self.notice = Some(format!("{refusal:?}"));
+        if self.coupled.is_some() {
+            self.show_coupled();
+        } else {
+            self.show_decoupled(real_s, since_s).map_err(|error| error.to_string())?;
+            // What this picture asked for need not wait for the next.
+            self.link.carry()?;
         }
         let there = |body| self.samples.binary_search_by_key(&body, |(id, _)| *id).is_ok();
         self.selection.keep(there);
         Ok(())
+    }
+
+    fn show_decoupled(&mut self, real_s: f64, since_s: f64) -> Result<(), DriverError> {
+        if self.rewinding {
+            let asked = self.picture.time_s - REWIND_SPEED * self.speed * since_s;
+            self.rewinding = self.driver.seek(asked)? <= asked + 1e-9;
+        }
+        self.picture = self.driver.show(real_s)?;
+        self.driver.sample_all(&self.picture, &mut self.samples);
+        for refusal in self.driver.refusals() {
+            self.refused(&refusal);
+        }
+        self.history.forget_to(self.picture.snapshot.oldest());
+        let answers = self.driver.answers()?;
+        self.questions.learn(answers);
+        Ok(())
+    }
+
+    fn refused(&mut self, refusal: &Refusal) {
+        if let Some(key) = refusal.key() {
+            self.history.forget(key);
+        }
+        self.notice = Some(refusal.to_string());
     }
 
     /// How long a frame is. Seconds.
@@ -105,7 +144,7 @@ impl Play {
 
     /// Runs backwards, or no longer.
     pub fn set_rewinding(&mut self, rewinding: bool) {
-        self.rewinding = rewinding;
+        self.rewinding = rewinding && self.coupled.is_none();
         self.tell_speed();
     }
 
@@ -115,16 +154,18 @@ impl Play {
         self.tell_speed();
     }
 
-    fn tell_speed(&mut self) {
-        let speed = if self.paused || self.rewinding { 0.0 } else { self.speed };
-        let told = self.driver.set_speed(speed);
+    pub(super) fn tell_speed(&mut self) {
+        let still = self.paused || self.rewinding || self.coupled.is_some();
+        let told = self.driver.set_speed(if still { 0.0 } else { self.speed });
         self.note(told);
     }
 
-    /// Shows another time (seconds), or the nearest that is kept.
+    /// Shows another time (seconds), or the nearest that is kept. Not in coupled mode: there is no other time then.
     pub fn seek(&mut self, time_s: f64) {
-        let sought = self.driver.seek(time_s).map(drop);
-        self.note(sought);
+        if self.coupled.is_none() {
+            let sought = self.driver.seek(time_s).map(drop);
+            self.note(sought);
+        }
     }
 
     /// Goes so many frames on or back, to a whole frame, and stands still.
@@ -134,22 +175,17 @@ impl Play {
         self.seek(frame.max(0) as f64 * self.frame_seconds());
     }
 
-    /// A change from the first frame after the one shown.
-    pub fn change(&mut self, change: Change) {
-        let told = self.driver.change(change).map(drop);
-        self.note(told);
+    /// Gravity where it is shown. m/s².
+    #[must_use]
+    pub fn gravity(&self) -> Vec3 {
+        let snapshot = &self.picture.snapshot;
+        snapshot.environment_at(self.picture.frame.min(snapshot.horizon())).gravity
     }
 
-    /// Takes back the last command.
-    pub fn undo(&mut self) {
-        let told = self.driver.undo();
-        self.note(told);
-    }
-
-    /// Does again what was taken back.
-    pub fn redo(&mut self) {
-        let told = self.driver.redo();
-        self.note(told);
+    /// The time of a frame. Seconds.
+    #[must_use]
+    pub fn seconds_of(&self, frame: Frame) -> f64 {
+        frame.seconds(self.picture.snapshot.frame_seconds())
     }
 
     /// Keeps what was not possible for the user to read.

@@ -7,12 +7,14 @@ use forerun::BodyId;
 pub struct Selection {
     /// In the order in which they were picked.
     bodies: Vec<BodyId>,
+    /// Are picked as soon as they are there.
+    coming: Vec<BodyId>,
 }
 
 impl Selection {
     /// Picks one body and no other.
     pub fn pick(&mut self, body: BodyId) {
-        self.bodies = vec![body];
+        self.pick_all([body]);
     }
 
     /// Picks one more, or no longer.
@@ -26,15 +28,25 @@ impl Selection {
     /// Picks these and no others.
     pub fn pick_all(&mut self, bodies: impl IntoIterator<Item = BodyId>) {
         self.bodies = bodies.into_iter().collect();
+        self.coming.clear();
+    }
+
+    /// Picks these and no others, as soon as they are there: they were added at a frame that is not shown yet.
+    pub fn pick_coming(&mut self, bodies: Vec<BodyId>) {
+        self.coming = bodies;
     }
 
     /// Picks none.
     pub fn clear(&mut self) {
-        self.bodies.clear();
+        self.pick_all([]);
     }
 
     /// Forgets those that are not there any more.
     pub fn keep(&mut self, there: impl Fn(BodyId) -> bool) {
+        if self.coming.iter().any(|body| there(*body)) {
+            let coming = std::mem::take(&mut self.coming);
+            self.pick_all(coming);
+        }
         self.bodies.retain(|body| there(*body));
     }
 

@@ -1,10 +1,10 @@
 //! Block on a slope: Coulomb friction stops a block, or lets it slide, where the formula says, even with restitution 1.
 //!
 //! Guendelman, Bridson, Fedkiw, *Nonconvex Rigid Bodies with Stacking* (2003), section 9; the numbers are those of the authors' own
-//! test (PhysBAM, Sliding_Test): g = 9.8 m/s², a 20 degree plane, a cube of half extent 0.05 m.
+//! test (PhysBAM, Sliding_Test): g = 9.8 m/s², a 20 degree plane, a cube of half extent 0.05 m. Block and plane also as distance fields.
 
 use forerun::dynamics::{BodyDef, Mass, Material, World};
-use forerun::geometry::shape::Cuboid;
+use forerun::geometry::shape::{Cuboid, mesh_make};
 use forerun::geometry::{Quat, Shape, Vec3};
 
 use crate::validate::Figure;
@@ -19,33 +19,52 @@ const HOP_M: f64 = 1e-4;
 const CREEP_M: f64 = 1e-4;
 const TILT_DEGREES: f64 = 0.1;
 
-/// The plane that the block slides on.
+/// What slides on what.
 #[derive(Clone, Copy, Debug)]
-enum Plane {
+enum Pairing {
     HalfSpace,
     Cuboid,
+    MeshOnHalfSpace,
+    MeshOnMesh,
 }
 
-impl Plane {
-    const ALL: [Plane; 2] = [Plane::HalfSpace, Plane::Cuboid];
+impl Pairing {
+    const ALL: [Pairing; 4] =
+        [Pairing::HalfSpace, Pairing::Cuboid, Pairing::MeshOnHalfSpace, Pairing::MeshOnMesh];
 
+    /// The plane's, where the block is a cuboid.
     fn name(self) -> &'static str {
         match self {
-            Plane::HalfSpace => "half-space",
-            Plane::Cuboid => "cuboid",
+            Pairing::HalfSpace => "half-space",
+            Pairing::Cuboid => "cuboid",
+            Pairing::MeshOnHalfSpace => "mesh on half-space",
+            Pairing::MeshOnMesh => "mesh on mesh",
         }
     }
 
-    fn def(self, slope: Slope, material: Material) -> BodyDef {
-        let mut def = match self {
-            Plane::HalfSpace => slope.ground(),
-            Plane::Cuboid => {
-                let half_extents = Vec3::new(20.0, 1.0, 20.0);
-                let mut def = BodyDef::fixed(solid_box(half_extents));
+    fn block(self) -> Shape {
+        let half_extents = Vec3::splat(HALF);
+        match self {
+            Pairing::HalfSpace | Pairing::Cuboid => solid_box(half_extents),
+            Pairing::MeshOnHalfSpace | Pairing::MeshOnMesh => mesh_box(half_extents),
+        }
+    }
+
+    fn plane(self, slope: Slope, material: Material) -> BodyDef {
+        let half_extents = Vec3::new(20.0, 1.0, 20.0);
+        let shape = match self {
+            Pairing::HalfSpace | Pairing::MeshOnHalfSpace => None,
+            Pairing::Cuboid => Some(solid_box(half_extents)),
+            Pairing::MeshOnMesh => Some(mesh_box(half_extents)),
+        };
+        let mut def = shape.map_or_else(
+            || slope.ground(),
+            |shape| {
+                let mut def = BodyDef::fixed(shape);
                 def.pose = slope.pose(Vec3::new(0.0, -half_extents.y, 0.0), Quat::IDENTITY);
                 def
-            }
-        };
+            },
+        );
         def.material = material;
         def
     }
@@ -86,9 +105,9 @@ struct Worst {
 pub(crate) fn run() -> Vec<Figure> {
     let mut figures = Vec::new();
     for (rate, position_off) in RATES {
-        for plane in Plane::ALL {
-            stopping(plane, rate, position_off, &mut figures);
-            sliding(plane, rate, position_off, &mut figures);
+        for pairing in Pairing::ALL {
+            stopping(pairing, rate, position_off, &mut figures);
+            sliding(pairing, rate, position_off, &mut figures);
         }
         three_cubes(rate, position_off, &mut figures);
     }
@@ -99,16 +118,21 @@ fn solid_box(half_extents: Vec3) -> Shape {
     Shape::Cuboid(Cuboid { half_extents })
 }
 
+fn mesh_box(half_extents: Vec3) -> Shape {
+    // Fixed sizes, within the ranges that the maker names.
+    mesh_make::cuboid(half_extents).expect("a box is possible").into()
+}
+
 /// A block on a 20 degree plane, with restitution 1 on both.
-fn block(plane: Plane, friction: f32, speed: f32) -> (Slope, [BodyDef; 2]) {
+fn block(pairing: Pairing, friction: f32, speed: f32) -> (Slope, [BodyDef; 2]) {
     let slope = Slope::degrees(20.0);
     let material = Material::new(friction, 1.0);
-    let mut block = BodyDef::new(solid_box(Vec3::splat(HALF)));
+    let mut block = BodyDef::new(pairing.block());
     block.pose = slope.pose(Vec3::new(0.0, HALF, 0.0), Quat::IDENTITY);
     block.velocity = slope.rotation() * Vec3::new(speed, 0.0, 0.0);
     block.mass = Mass::Total(1.0);
     block.material = material;
-    (slope, [plane.def(slope, material), block])
+    (slope, [pairing.plane(slope, material), block])
 }
 
 /// Follows the block and compares it with the formula.
@@ -132,8 +156,8 @@ fn follow(defs: &[BodyDef], slope: Slope, slide: Slide, rate: u32) -> (Worst, Wo
 }
 
 /// (a) Friction 0.5, thrown downhill at 1.25 m/s: stops after 0.623655 m and stays.
-fn stopping(plane: Plane, rate: u32, position_off: f64, figures: &mut Vec<Figure>) {
-    let (slope, defs) = block(plane, 0.5, 1.25);
+fn stopping(pairing: Pairing, rate: u32, position_off: f64, figures: &mut Vec<Figure>) {
+    let (slope, defs) = block(pairing, 0.5, 1.25);
     let slide = Slide { speed: 1.25, acceleration: G * (slope.sin() - 0.5 * slope.cos()) };
     let (worst, mut world) = follow(&defs, slope, slide, rate);
     let [stop, ..] = slope.local(world.states()[1].position);
@@ -142,7 +166,7 @@ fn stopping(plane: Plane, rate: u32, position_off: f64, figures: &mut Vec<Figure
         creep = creep.max((slope.local(states[1].position)[0] - stop).abs());
     });
     let distance = slide.distance(3.0);
-    let name = |what: &str| format!("(a) {}, 1/{rate}: {what}", plane.name());
+    let name = |what: &str| format!("(a) {}, 1/{rate}: {what}", pairing.name());
     figures.extend([
         Figure::at_most(name("worst position, part of the way"), worst.position / distance, position_off),
         Figure::at_most(name("stop point, part of the way"), (stop / distance - 1.0).abs(), position_off),
@@ -155,11 +179,11 @@ fn stopping(plane: Plane, rate: u32, position_off: f64, figures: &mut Vec<Figure
 }
 
 /// (b) Friction 0.25, let go: slides 2.0991 m in 2 s.
-fn sliding(plane: Plane, rate: u32, position_off: f64, figures: &mut Vec<Figure>) {
-    let (slope, defs) = block(plane, 0.25, 0.0);
+fn sliding(pairing: Pairing, rate: u32, position_off: f64, figures: &mut Vec<Figure>) {
+    let (slope, defs) = block(pairing, 0.25, 0.0);
     let slide = Slide { speed: 0.0, acceleration: G * (slope.sin() - 0.25 * slope.cos()) };
     let (worst, _) = follow(&defs, slope, slide, rate);
-    let name = |what: &str| format!("(b) {}, 1/{rate}: {what}", plane.name());
+    let name = |what: &str| format!("(b) {}, 1/{rate}: {what}", pairing.name());
     figures.extend([
         Figure::at_most(
             name("worst position, part of the way"),

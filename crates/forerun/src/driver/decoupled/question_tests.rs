@@ -63,18 +63,18 @@ fn a_preview_of_a_throw_is_what_the_throw_then_does() {
 #[test]
 fn asking_waits_neither_for_physics_nor_for_answers() {
     let settings = DecoupledSettings::new(Threads::exactly(std::num::NonZeroU16::MIN).expect("one"));
-    let slow_down = Duration::from_millis(500);
+    let slow_down = Duration::from_secs(1);
     let mut driver =
         Decoupled::start(timeline(), DecoupledSettings { slow_down, ..settings }).expect("a thread");
     driver.ask(Question::Inspect { frame: Frame(0) }).expect("a thread");
     let clock = Clock::system();
     let preview = Preview { frame: Frame(1), changes: vec![], frames: 10, bodies: vec![] };
-    for k in 0..1000 {
+    for k in 0..200 {
         driver.ask(Question::Inspect { frame: Frame(k % 2) }).expect("never full");
         driver.ask(Question::Preview(preview.clone())).expect("never full");
         let _ = driver.answers().expect("the thread lives");
     }
-    assert!(clock.now() < Duration::from_millis(300), "{:?}", clock.now());
+    assert!(clock.now() < Duration::from_millis(500), "{:?}", clock.now());
 }
 
 /// Milliseconds that a host's clock shows; every look takes one.

@@ -1,0 +1,131 @@
+//! Desk: what the user works with, without a window: what keys ask for is done here, and what the mouse does.
+
+use forerun::{BodyId, Sample, Vec3};
+use three_d::Event;
+
+use crate::actions::{Action, action_of};
+use crate::camera::{Camera, Framed};
+use crate::hands::Hands;
+use crate::input::Input;
+use crate::session::{Play, Session};
+use crate::view::{Tool, View};
+
+/// Half and double speed.
+const SPEED_FACTOR: f64 = 2.0;
+
+/// What the user works with.
+#[derive(Debug)]
+pub struct Desk<'a> {
+    /// The scene that is open.
+    pub session: &'a mut Session,
+    /// What is shown and how.
+    pub view: &'a mut View,
+    /// Where it is seen from.
+    pub camera: &'a mut Camera,
+    /// What the mouse does.
+    pub hands: &'a mut Hands,
+}
+
+/// What the keys ask for that nobody has taken yet.
+pub fn keys_of(input: &mut Input) -> Vec<Action> {
+    let mut asked = Vec::new();
+    for event in &mut input.events {
+        if let Event::KeyPress { kind, modifiers, handled: handled @ false } = event
+            && let Some(action) = action_of(*kind, *modifiers)
+        {
+            *handled = true;
+            asked.push(action);
+        }
+    }
+    asked
+}
+
+impl Desk<'_> {
+    /// Takes what the mouse did since the last picture.
+    pub fn take_mouse(&mut self, input: &mut Input) {
+        let opened = self.session.opened;
+        if let Some(play) = self.session.play_mut() {
+            self.hands.take(input, (play, opened), self.camera, self.view);
+        }
+    }
+
+    /// Does what a key, a menu or a button asks for, as far as it needs no window.
+    pub fn perform(&mut self, action: Action) {
+        let Desk { session, view, .. } = self;
+        match action {
+            Action::Reload => session.reload(),
+            Action::Coupled => session.switch_driver(),
+            Action::Help => view.open.help ^= true,
+            Action::Plots => view.open.plots ^= true,
+            Action::Inspector => view.open.inspector ^= true,
+            Action::Ghosts => view.ghosts.shown ^= true,
+            Action::Contacts => view.overlays.contacts ^= true,
+            Action::NextColour => view.colour_by = view.colour_by.next(),
+            Action::SelectTool => view.grip.tool = Tool::Select,
+            Action::ThrowTool => view.grip.tool = Tool::Throw,
+            Action::PushTool => view.grip.tool = Tool::Push,
+            action => self.perform_in_scene(action),
+        }
+    }
+
+    /// Actions that need a scene.
+    fn perform_in_scene(&mut self, action: Action) {
+        let Some(play) = self.session.play_mut() else { return };
+        match action {
+            Action::Focus => focus(play, self.camera, play.selection.bodies()),
+            Action::FrameAll => focus(play, self.camera, &[]),
+            Action::Add => self.hands.add(play, self.camera, &self.view.grip),
+            Action::Delete => play.remove_selected(),
+            Action::Duplicate => play.duplicate_selected(),
+            Action::SelectAll => play.select_all(),
+            Action::Deselect => {
+                if !self.hands.cancel(play) {
+                    play.selection.clear();
+                }
+            }
+            Action::Undo => play.undo(),
+            Action::Redo => play.redo(),
+            action => perform_in_time(play, action),
+        }
+    }
+}
+
+fn perform_in_time(play: &mut Play, action: Action) {
+    let snapshot = play.picture.snapshot.clone();
+    match action {
+        Action::PlayPause => play.set_paused(!play.paused),
+        Action::StepForward => play.step(1),
+        Action::StepBack => play.step(-1),
+        Action::JumpForward => play.seek(play.picture.time_s + 1.0),
+        Action::JumpBack => play.seek(play.picture.time_s - 1.0),
+        Action::GoToStart => play.seek(play.seconds_of(snapshot.oldest())),
+        Action::GoToHorizon => play.seek(play.seconds_of(snapshot.horizon())),
+        Action::Slower => play.set_speed(play.speed / SPEED_FACTOR),
+        Action::Faster => play.set_speed(play.speed * SPEED_FACTOR),
+        Action::Rewind => play.set_rewinding(!play.rewinding),
+        _ => {}
+    }
+}
+
+/// Travels to bodies; with none to all, but for strays.
+fn focus(play: &Play, camera: &mut Camera, bodies: &[BodyId]) {
+    let (balls, aspect) = (balls_of(play, bodies), camera.motion.aspect);
+    let Some(around) = Framed::around(&balls, aspect) else { return };
+    if bodies.is_empty() {
+        camera.travel(around);
+    } else {
+        // From the direction that it looks in already.
+        let Framed { yaw, pitch, .. } = camera.framed();
+        camera.travel(Framed { yaw, pitch, ..around }.fitting(&balls, aspect));
+    }
+}
+
+/// Balls around bodies as they are drawn: those picked, or with none all that has an end.
+fn balls_of(play: &Play, bodies: &[BodyId]) -> Vec<(Vec3, f32)> {
+    let samples = play.samples.iter().filter(|(id, _)| bodies.is_empty() || bodies.contains(id));
+    let ball = |(id, sample): &(BodyId, Sample)| {
+        let body = play.body(*id).filter(|body| body.radius.is_finite())?;
+        Some((sample.pose.transform_point(body.frame.position), body.radius))
+    };
+    samples.filter_map(ball).collect()
+}

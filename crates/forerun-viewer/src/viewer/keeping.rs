@@ -1,0 +1,73 @@
+//! What of a picture is kept: screenshots, films, the numbers behind the plots.
+
+use three_d::{DepthTexture2D, Interpolation, RenderTarget, Texture2D, Viewport, Wrapping};
+
+use super::{Viewer, scenery};
+use crate::capture::{self, FilmSize, Shot};
+use crate::series;
+
+impl Viewer {
+    /// The session's clock goes with the window's; while a film is taken, by a picture of the film at a time.
+    pub(super) fn turn_clock(&mut self, elapsed_s: f64) {
+        let goes_on_s = match &mut self.capture.film {
+            Some(film) => film.tick(elapsed_s),
+            None => elapsed_s,
+        };
+        self.filmed = self.capture.film.is_some() && goes_on_s > 0.0;
+        self.clock_s += goes_on_s;
+    }
+
+    /// Keeps of this picture what is wanted: before (`bare`) or after the panels are drawn.
+    pub(super) fn keep_picture(&mut self, window: &RenderTarget<'_>, bare: bool) {
+        let scale = self.window.pixels_per_point * self.view.scale;
+        self.capture.take(bare, scale, &self.session, || Shot::of(window));
+        let Some(film) = self.capture.film.as_ref().filter(|_| self.filmed) else { return };
+        let settings = film.settings;
+        let with_panels = settings.panels && settings.size == FilmSize::Window;
+        if bare == with_panels {
+            return;
+        }
+        let shot = match settings.size.pixels() {
+            None => Shot::of(window),
+            // Twice as large, and then the mean of each four: edges come out smooth.
+            Some(size) => self.draw_apart(size.map(|side| 2 * side)),
+        };
+        if let Some(film) = &mut self.capture.film {
+            film.take(shot);
+        }
+    }
+
+    /// Draws the scene, without panels.
+    pub(super) fn draw_scene(&mut self, target: &RenderTarget<'_>, viewport: Viewport) {
+        let Viewer { session, view, camera, hands, painter, .. } = self;
+        let Some(scenery) = scenery(session, camera, view, hands) else { return };
+        painter.draw(target, viewport, &scenery);
+    }
+
+    /// The scene in a size of its own.
+    fn draw_apart(&mut self, [width, height]: [u32; 2]) -> Shot {
+        let context = self.context.clone();
+        let smooth = Interpolation::Linear;
+        let clamp = Wrapping::ClampToEdge;
+        let colour =
+            Texture2D::new_empty::<[u8; 4]>(&context, width, height, smooth, smooth, None, clamp, clamp);
+        let depth = DepthTexture2D::new::<f32>(&context, width, height, clamp, clamp);
+        let target = RenderTarget::new(colour.as_color_target(None), depth.as_depth_target());
+        self.draw_scene(&target, Viewport::new_at_origo(width, height));
+        Shot::of(&target)
+    }
+
+    /// Writes the numbers behind the plots.
+    pub(super) fn keep_numbers(&mut self) {
+        let stem = capture::stem(&self.session);
+        let series = &self.series;
+        let tables = [
+            ("queue", series::pictures_csv(&series.pictures)),
+            ("steps", series::steps_csv(&series.steps)),
+            ("edits", series::edits_csv(&series.edits)),
+        ];
+        for (name, table) in tables {
+            self.capture.save_text(&format!("{stem}-{name}.csv"), table);
+        }
+    }
+}
