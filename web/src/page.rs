@@ -11,7 +11,8 @@ use crate::error;
 #[wasm_bindgen]
 pub fn run_page(scene: &str, slow_ms: Option<Vec<f64>>) -> Result<(), JsError> {
     let slow_ms = slow_ms.and_then(|slow| Some([*slow.first()?, *slow.get(1)?]));
-    page::run(SceneSource::BuiltIn(scene.to_owned()), Host { slow_ms }).map_err(error)
+    let host = slow_ms.map_or_else(Host::default, Host::new);
+    page::run(SceneSource::BuiltIn(scene.to_owned()), host).map_err(error)
 }
 
 /// Opens a scene file by its content.
