@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use forerun::scene::Format;
 use three_d::{Window, WindowSettings};
 
-use crate::host::{Host, SceneSource};
+use crate::host::{Host, SceneSource, load_settings};
 use crate::report::Report;
-use crate::view::View;
+use crate::settings::Settings;
 use crate::viewer::Viewer;
 
 thread_local! {
@@ -24,7 +24,8 @@ thread_local! {
 pub fn run(source: SceneSource, host: Host) -> Result<(), String> {
     let settings = WindowSettings { title: "forerun".to_owned(), ..WindowSettings::default() };
     let window = Window::new(settings).map_err(|error| error.to_string())?;
-    let mut viewer = Viewer::new(&window.gl(), host, source, View::default());
+    let settings = Settings::of_text(&load_settings().unwrap_or_default());
+    let mut viewer = Viewer::new(&window.gl(), host, source, settings);
     window.render_loop(move |frame| {
         for source in GIVEN.take() {
             viewer.session.open(source);
