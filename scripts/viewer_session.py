@@ -8,7 +8,7 @@ It needs a display (or Xvfb), xdotool and, for pictures, ImageMagick's `import`:
 
 Start, pause, scrub, throw, drag, undo and redo, the switch of the driver and another scene are real events of the X server; what came of them is
 read from the report that `forerun view --report FILE` writes after every picture. One line a check; exit code 0 when all passed, 1 otherwise.
-With --pictures, a folder gets one picture each of five scenes.
+With --pictures, a folder gets one picture each of five scenes, and of the moments of the session.
 """
 
 import argparse
@@ -26,7 +26,7 @@ SIZE = (1280, 720)
 # Software that draws without a graphics card takes its time.
 PATIENCE_S = 90.0
 # What panels may cover. Pixels from the left, the top, the right and the bottom.
-MARGINS = (240, 60, 300, 220)
+MARGINS = (240, 130, 330, 200)
 # Scene, keys, seconds until the picture is taken.
 PICTURES = [
     ("dominoes:60", [], 3.0),
@@ -44,7 +44,8 @@ class Failed(Exception):
 class Viewer:
     """A viewer in a window, and the report that it writes."""
 
-    def __init__(self, binary, scene, folder):
+    def __init__(self, binary, scene, folder, out=None):
+        self.out = out
         self.report_file = pathlib.Path(folder) / "report.json"
         self.report_file.unlink(missing_ok=True)
         size = f"{SIZE[0]}x{SIZE[1]}"
@@ -134,8 +135,13 @@ class Viewer:
             raise Failed(f"no body is in sight: {self.state()['play']['in_sight']}")
         return bodies[0]
 
-    def picture(self, path):
+    def picture(self, name):
+        """Keeps a picture, where pictures are asked for; its file."""
+        if self.out is None:
+            return None
+        path = self.out / f"{name}.png"
         subprocess.run(["import", "-window", self.window, str(path)], check=True)
+        return path
 
 
 def xdotool(*arguments):
@@ -194,6 +200,7 @@ def throw(viewer, check):
     state = viewer.wait("the throw is aimed", lambda state: state["play"]["aiming"] and state["play"]["preview"])
     preview = state["play"]["preview"]
     check(preview["frames"] > 10, "throw: a preview is there while it is aimed", f"{preview['frames']} frames")
+    viewer.picture("throw")
     viewer.release()
     state = viewer.wait("the body is there", lambda state: state["play"]["bodies"] == before["bodies"] + 1)
     play = state["play"]
@@ -214,6 +221,7 @@ def drag(viewer, check):
     picked = play["selected"] == [state["play"]["dragged"]]
     check(picked, "drag: the body under the mouse is picked and dragged", f"body {state['play']['dragged']}")
     moved = viewer.wait("the body follows", lambda state: state["play"]["selected_position"][1] > body["position"][1] + 0.1)
+    viewer.picture("drag")
     viewer.release()
     viewer.key("space")
     height = moved["play"]["selected_position"][1] - body["position"][1]
@@ -252,27 +260,26 @@ def switch(viewer, check):
     before = viewer.key("k")["play"]
     check(before["coupled"] and before["undo"] == 0, "coupled: the traditional driver goes on", f"from {before['time_s']:.3f} s")
     viewer.key("space")
+    viewer.picture("coupled")
     viewer.wait("it steps", lambda state: state["play"]["time_s"] > before["time_s"] + 0.05)
     viewer.key("k")
     state = viewer.wait("physics is ahead again", lambda state: state["play"]["horizon_s"] > state["play"]["time_s"] + 0.5)
     check(not state["play"]["coupled"], "coupled: and back to the one that runs ahead")
 
 
-def session(binary, folder, check):
-    with Viewer(binary, "pyramid:5", folder) as viewer:
+def session(binary, folder, out, check):
+    with Viewer(binary, "pyramid:5", folder, out) as viewer:
         for part in [start_and_pause, scrub, throw, drag, undo, remove, switch]:
             part(viewer, check)
 
 
 def pictures(binary, folder, out, check):
-    out.mkdir(parents=True, exist_ok=True)
     for scene, keys, seconds in PICTURES:
-        with Viewer(binary, scene, folder) as viewer:
+        with Viewer(binary, scene, folder, out) as viewer:
             for key in keys:
                 viewer.key(key)
             viewer.wait("the moment has come", lambda state: state["play"]["time_s"] >= seconds)
-            path = out / f"{scene.split(':')[0]}.png"
-            viewer.picture(path)
+            path = viewer.picture(scene.split(":")[0])
             check(path.stat().st_size > 10_000, f"picture: {path}")
 
 
@@ -285,10 +292,12 @@ def main():
     if shutil.which("xdotool") is None:
         sys.exit("xdotool is missing")
     check = Checks()
+    if asked.pictures:
+        asked.pictures.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         try:
             if not asked.only_pictures:
-                session(asked.binary, folder, check)
+                session(asked.binary, folder, asked.pictures, check)
             if asked.pictures:
                 pictures(asked.binary, folder, asked.pictures, check)
         except (Failed, subprocess.CalledProcessError) as error:

@@ -7,11 +7,12 @@ use wasm_bindgen::prelude::*;
 use crate::error;
 
 /// Starts the viewer in the first canvas of the page, with a built-in scene. `slow_ms` makes every frame of the physics slower, by the first number
-/// of milliseconds to the second. Leaves by an exception that is none (`not actual error`), as the window library does.
+/// of milliseconds to the second. Leaves by an exception that is none (`isn't actually an error`), as the window library does.
 #[wasm_bindgen]
 pub fn run_page(scene: &str, slow_ms: Option<Vec<f64>>) -> Result<(), JsError> {
     let slow_ms = slow_ms.and_then(|slow| Some([*slow.first()?, *slow.get(1)?]));
-    page::run(SceneSource::BuiltIn(scene.to_owned()), Host { slow_ms }).map_err(error)
+    let host = slow_ms.map_or_else(Host::default, Host::new);
+    page::run(SceneSource::BuiltIn(scene.to_owned()), host).map_err(error)
 }
 
 /// Opens a scene file by its content.

@@ -1,14 +1,13 @@
 //! Worker: the physics' role. JavaScript carries the messages and gives it time.
 
+use forerun::recording::Recording;
 use forerun::scene::Format;
 use forerun::timeline::Progress;
-use forerun::{Clock, Frame, RemotePhysics, RemoteSettings, Scene, TimelineSettings, timeline_of};
+use forerun::{Frame, RemotePhysics, Scene, Timeline, TimelineSettings, timeline_of};
+use forerun_viewer::host as page_host;
 use wasm_bindgen::prelude::*;
 
 use crate::{error, now_s};
-
-/// States of the past that may be gone back to. Frames: a minute of them, as pages have less memory.
-const PAST_FRAMES: u32 = 3600;
 
 /// A physics, for a display in another thread.
 #[wasm_bindgen]
@@ -26,14 +25,19 @@ impl PhysicsWorker {
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str, text: Option<String>) -> Result<PhysicsWorker, JsError> {
         let scene = scene_of(name, text.as_deref())?;
-        let settings = TimelineSettings { past: PAST_FRAMES, ..TimelineSettings::default() };
-        let timeline = timeline_of(&scene, settings).map_err(error)?;
-        let settings = RemoteSettings {
-            count_areas: true,
-            stage_clock: Some(Clock::host(now_s)),
-            ..RemoteSettings::default()
-        };
-        let physics = RemotePhysics::new(timeline, settings).map_err(error)?;
+        PhysicsWorker::of(timeline_of(&scene, page_host::timeline_settings()).map_err(error)?)
+    }
+
+    /// Goes on from a recording that a page made of a timeline. The page knows already what there is at first.
+    pub fn resumed(recording: &[u8]) -> Result<PhysicsWorker, JsError> {
+        let timeline = Recording::decode(recording).map_err(error)?.timeline().map_err(error)?;
+        let mut worker = PhysicsWorker::of(timeline)?;
+        drop(worker.publish());
+        Ok(worker)
+    }
+
+    fn of(timeline: Timeline) -> Result<PhysicsWorker, JsError> {
+        let physics = RemotePhysics::new(timeline, page_host::remote_settings()).map_err(error)?;
         Ok(PhysicsWorker { physics, slow_s: None, frames: 0 })
     }
 

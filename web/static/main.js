@@ -11,7 +11,7 @@ function tell(message) {
 
 window.addEventListener("error", ({ error, message }) => {
   // The window library leaves its starting function by an exception; that is no error.
-  if (!`${error?.message ?? message}`.includes("not actual error")) {
+  if (!`${error?.message ?? message}`.includes("isn't actually an error")) {
     tell(forerun.last_panic() ?? `${error?.message ?? message}`);
   }
 });
@@ -37,7 +37,7 @@ try {
   tell("");
   forerun.run_page(wishes.get("scene") ?? "dominoes", slow ? [slow[0], slow[1] ?? slow[0]] : undefined);
 } catch (error) {
-  if (!`${error}`.includes("not actual error")) {
+  if (!`${error}`.includes("isn't actually an error")) {
     tell(`The viewer cannot start: ${forerun.last_panic?.() ?? error.message ?? error}. It needs a browser with WebAssembly SIMD and WebGL 2.`);
   }
 }

@@ -1,4 +1,4 @@
-// The physics of the page, in a thread of its own. It gets { open } once and { letter } often, and posts { report }, { failed } or { ready }.
+// The physics of the page, in a thread of its own. It gets { open } once, { letter } often, and { slow } to be hindered; it posts { report }, { failed } or { ready }.
 // Works as a module worker and as a classic one: modules are loaded either way by import().
 
 /** How long it works before it looks for letters. Milliseconds. */
@@ -25,24 +25,25 @@ onmessage = async ({ data }) => {
       postMessage({ failed: `the physics cannot be loaded: ${error.message ?? error}` });
     }
   } else if (physics) {
-    attempt(() => receive(data.letter));
+    attempt(() => take(data));
   } else {
-    waiting.push(data.letter);
+    waiting.push(data);
   }
 };
 
-function open({ name, text, slow }) {
-  physics = new forerun.PhysicsWorker(name, text);
-  if (slow) {
-    physics.hinder(slow[0], slow[1]);
-  }
-  waiting.splice(0).forEach(receive);
+function open({ name, text, recording }) {
+  physics = recording ? forerun.PhysicsWorker.resumed(recording) : new forerun.PhysicsWorker(name, text);
+  waiting.splice(0).forEach(take);
   publish();
   schedule();
 }
 
-function receive(letter) {
-  physics.receive(new Uint8Array(letter));
+function take({ letter, slow }) {
+  if (slow) {
+    physics.hinder(slow[0], slow[1]);
+  } else {
+    physics.receive(new Uint8Array(letter));
+  }
   schedule();
 }
 

@@ -14,6 +14,9 @@ const dist = join(web, "dist");
 const out = process.argv[2] ?? join(web, "out");
 mkdirSync(out, { recursive: true });
 
+/** What panels may cover at the left, top, right and bottom. Pixels. */
+const MARGINS = [240, 60, 300, 220];
+
 const FLAGS = [
   "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
   "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
@@ -43,7 +46,9 @@ async function until(page, what, wanted, seconds = 90) {
   for (const end = Date.now() + seconds * 1000; Date.now() < end; ) {
     last = await state(page).catch(() => null);
     if (last && wanted(last)) {
-      console.log(`  ${what}`);
+      if (what) {
+        console.log(`  ${what}`);
+      }
       return last;
     }
     await page.waitForTimeout(50);
@@ -57,7 +62,7 @@ const playing = (s) => s.stage === "playing" && s.play.bodies > 0 && s.play.hori
 async function open(browser, server, query, viewport) {
   const page = await browser.newPage({ viewport });
   page.on("pageerror", (error) => {
-    if (!`${error}`.includes("not actual error")) {
+    if (!`${error}`.includes("isn't actually an error")) {
       console.log(`  page: ${error}`);
     }
   });
@@ -66,114 +71,125 @@ async function open(browser, server, query, viewport) {
   return page;
 }
 
-const key = async (page, name) => {
-  await page.keyboard.press(name, { delay: 60 });
-};
+/** Waits until some pictures more are drawn: what was pressed before has been seen then. */
+async function pictures(page, count = 2) {
+  const { pictures } = await state(page);
+  return until(page, "", (s) => s.pictures >= pictures + count);
+}
 
-/** Start, pause, step, scrub, pick, throw, drag, undo. */
-async function session(page) {
+async function key(page, name) {
+  await page.keyboard.down(name);
+  await pictures(page, 1);
+  await page.keyboard.up(name);
+  return pictures(page);
+}
+
+async function chord(page, modifier, name) {
+  await page.keyboard.down(modifier);
+  await pictures(page, 1);
+  await key(page, name);
+  await page.keyboard.up(modifier);
+  return pictures(page);
+}
+
+async function press(page, [x, y]) {
+  await page.mouse.move(x, y);
+  await pictures(page, 1);
+  await page.mouse.down();
+  return pictures(page);
+}
+
+async function dragOn(page, from, to, steps = 6) {
+  for (let i = 1; i <= steps; i++) {
+    await page.mouse.move(from[0] + ((to[0] - from[0]) * i) / steps, from[1] + ((to[1] - from[1]) * i) / steps);
+    await pictures(page, 1);
+  }
+}
+
+async function release(page) {
+  await page.mouse.up();
+  return pictures(page);
+}
+
+/** A body that can be clicked at and that no panel covers. */
+async function body(page) {
   const { width, height } = page.viewportSize();
-  await page.mouse.click(width / 2, height * 0.9);
-  await key(page, "Space");
-  let s = await until(page, "paused", (s) => s.play.paused);
-  await page.waitForTimeout(500);
-  const still = await state(page);
-  check(still.play.time_s === s.play.time_s, "time stands still");
-  await key(page, "ArrowRight");
-  await until(page, "a step forward", (now) => now.play.time_s > s.play.time_s);
-  await key(page, "Home");
-  await until(page, "at the start", (now) => now.play.time_s <= now.play.oldest_s + 1e-6);
-  await key(page, "End");
-  s = await until(page, "at the horizon", (now) => now.play.time_s > 0.5);
-  await key(page, "Home");
-  await until(page, "back at the start", (now) => now.play.time_s < s.play.time_s);
+  const [left, top, right, bottom] = MARGINS;
+  const s = await state(page);
+  const clear = ({ pixel: [x, y] }) => left < x && x < width - right && top < y && y < height - bottom;
+  const found = s.play.in_sight.find(clear);
+  if (!found) {
+    throw new Error(`no body is in sight: ${JSON.stringify(s.play.in_sight)}`);
+  }
+  return found;
+}
+
+/** Start, pause, scrub, throw, drag, undo. */
+async function session(page) {
+  const begin = (await state(page)).play.time_s;
+  await until(page, "start: time goes on", (s) => s.play.time_s > begin + 0.2);
+  const paused = await key(page, "Space");
+  const later = await pictures(page, 4);
+  const still = later.play.time_s === paused.play.time_s && later.play.samples_hash === paused.play.samples_hash;
+  check(paused.play.paused && still, "pause: time and all bodies stand still");
   await scrub(page);
-  await pick(page);
   await throwOne(page);
   await drag(page);
-  await key(page, "Space");
-  s = await state(page);
-  await until(page, "plays again", (now) => !now.play.paused && now.play.time_s > s.play.time_s);
+  await undo(page);
 }
 
-/** Drags the playhead in the timeline strip, where the report says that it is. */
+/** Drags the playhead in the timeline strip, into the future and into the past. */
 async function scrub(page) {
-  const s = await state(page);
-  const strip = s.strip ?? s.play.strip;
-  if (!strip) {
-    throw new Error("the report does not say where the timeline strip is");
-  }
-  const [left, top, right, bottom] = strip;
-  const y = (top + bottom) / 2;
-  await page.mouse.move(left + 4, y);
-  await page.mouse.down();
-  await page.waitForTimeout(200);
-  await page.mouse.move(left + 0.5 * (right - left), y, { steps: 4 });
-  await until(page, "scrubbed", (now) => Math.abs(now.play.time_s - s.play.time_s) > 0.05);
-  await page.mouse.up();
-}
-
-/** Clicks across the picture until a body is picked. */
-async function pick(page) {
-  const { width, height } = page.viewportSize();
-  for (const [x, y] of places(width, height)) {
-    await page.mouse.click(x, y, { delay: 80 });
-    await page.waitForTimeout(300);
-    const s = await state(page);
-    if (s.play.selected.length === 1 && s.play.selected[0] !== 0) {
-      console.log(`  body ${s.play.selected[0]} picked`);
-      return [x, y];
-    }
-  }
-  throw new Error("no click picked a body");
-}
-
-function* places(width, height) {
-  for (const v of [0.5, 0.45, 0.55, 0.4, 0.6]) {
-    for (const u of [0.5, 0.4, 0.6, 0.3, 0.7, 0.45, 0.55]) {
-      yield [width * u, height * v];
-    }
+  await until(page, "physics is ahead", (s) => s.play.horizon_s > s.play.time_s + 1);
+  const { play } = await state(page);
+  for (const [what, to_s] of [["the future", play.time_s + 0.8], ["the past", 0.5 * play.time_s]]) {
+    const now = await state(page);
+    const { x, y, width, height, from_s, to_s: end_s } = now.strip;
+    const pixel = (time_s) => [x + ((time_s - from_s) / (end_s - from_s)) * width, y + 0.5 * height];
+    await press(page, pixel(now.play.time_s));
+    await dragOn(page, pixel(now.play.time_s), pixel(to_s));
+    const then = await release(page);
+    const slack = (3 * (end_s - from_s)) / width + 0.02;
+    const near = Math.abs(then.play.time_s - to_s) <= slack;
+    check(near && then.play.samples_hash !== play.samples_hash, `scrub: the playhead is dragged into ${what}`);
   }
 }
 
-/** Throws a body, sees one more, and takes it back. */
+/** Throws a body, after a preview that the worker computed. */
 async function throwOne(page) {
-  const { width, height } = page.viewportSize();
-  const { bodies, time_s } = (await state(page)).play;
   await key(page, "t");
-  await page.mouse.move(width * 0.5, height * 0.5);
-  await page.mouse.down();
-  await page.waitForTimeout(300);
-  await page.mouse.move(width * 0.5, height * 0.4, { steps: 4 });
-  await page.waitForTimeout(300);
-  await page.mouse.up();
-  await page.waitForTimeout(300);
-  await key(page, "ArrowRight");
-  await until(page, "a body is thrown", (s) => s.play.bodies === bodies + 1 && s.play.time_s > time_s);
-  await key(page, "Control+z");
-  await until(page, "the throw is undone", (s) => s.play.bodies === bodies);
-  await key(page, "Control+y");
-  await until(page, "and done again", (s) => s.play.bodies === bodies + 1);
-  await key(page, "q");
+  const before = (await state(page)).play;
+  await press(page, (await body(page)).pixel);
+  const aimed = await until(page, "throw: a preview is there while it is aimed", ({ play }) => play.aiming && play.preview);
+  await release(page);
+  const { play } = await until(page, "throw: the body is there", (s) => s.play.bodies === before.bodies + 1);
+  check(play.thrown === aimed.play.preview.body, "throw: it is the one that was previewed");
+  check(play.undo === before.undo + 1 && play.undo_label === "throw", "throw: it can be taken back");
 }
 
-/** Drags a body by its spring while time runs, and sees it elsewhere. */
+/** Drags a body by its spring while time runs, and sees it lifted. */
 async function drag(page) {
-  const [x, y] = await pick(page);
+  await key(page, "q");
+  await key(page, "Space");
+  const { pixel, position } = await body(page);
+  await press(page, pixel);
+  await dragOn(page, pixel, [pixel[0] + 70, pixel[1] - 90], 8);
+  await until(page, "drag: the body under the mouse is dragged", ({ play }) => play.dragged !== null && play.selected[0] === play.dragged);
+  await until(page, "drag: it is lifted", ({ play }) => play.selected_position[1] > position[1] + 0.1);
+  await release(page);
+  await key(page, "Space");
+  const { play } = await until(page, "drag: paused again", (s) => s.play.paused && s.play.dragged === null);
+  check(play.undo_label === "drag", "drag: it is one step to take back");
+}
+
+async function undo(page) {
   const before = (await state(page)).play;
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.waitForTimeout(300);
-  await key(page, "Space");
-  await page.mouse.move(x + 60, y - 60, { steps: 6 });
-  const [a, b, c] = before.selected_position;
-  await until(page, "a body is dragged", ({ play }) => {
-    const [d, e, f] = play.selected_position ?? [a, b, c];
-    return Math.hypot(a - d, b - e, c - f) > 0.05;
-  });
-  await page.mouse.up();
-  await key(page, "Space");
-  await until(page, "paused again", (s) => s.play.paused);
+  await chord(page, "Control", "z");
+  await until(page, "undo: the drag is taken back", ({ play }) => play.undo === before.undo - 1 && play.redo === 1);
+  await chord(page, "Control", "z");
+  await until(page, "undo: the thrown body is gone", ({ play }) => play.bodies === before.bodies - 1);
+  await chord(page, "Control", "y");
+  await until(page, "redo: it is back", ({ play }) => play.bodies === before.bodies);
 }
 
 function check(right, what) {
@@ -231,7 +247,7 @@ const server = await serve();
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", headless: true, args: FLAGS });
 let failed;
 try {
-  const view = { width: 960, height: 540 };
+  const view = { width: 1280, height: 720 };
   const first = await open(browser, server, "?scene=dominoes:30", view);
   await first.screenshot({ path: join(out, "web-dominoes.png") });
   for (const [scene, seconds] of [["pyramid:8", 1], ["tori:6", 1]]) {

@@ -17,6 +17,7 @@ pub mod inspect;
 pub mod meter;
 pub mod narrow_phase;
 mod plan;
+mod run;
 mod scratch;
 pub mod settings;
 mod slices;

@@ -7,12 +7,11 @@ use rayon::prelude::*;
 
 use crate::bounds::swept_bound;
 use crate::carried::Carried;
-use crate::close_up::CloseUp;
 use crate::narrow_phase::Contact;
 use crate::plan::{Plan, half_thickness, pack};
+use crate::run::Run;
 use crate::solver::{Batch, Ends, rest_after_slices};
 use crate::step::{Group, Member};
-use crate::touch::Ledger;
 use crate::{Body, BodyState, Environment, Observer, Stage};
 
 /// An overlap that grows by less than this is never too deep. Metres.
@@ -34,48 +33,6 @@ pub(crate) struct Slicer<'a> {
     pub(crate) environment: &'a Environment,
     pub(crate) plan: &'a Plan,
     pub(crate) count: u32,
-}
-
-/// Where the states of a run go, and what it did.
-pub(crate) struct Run<'a> {
-    pub(crate) observer: &'a mut dyn Observer,
-    /// By member of the group.
-    pub(crate) next: &'a mut [BodyState],
-    /// Where somebody asks for touches.
-    pub(crate) notes: Option<Ledger>,
-    /// Where somebody looks into the step.
-    pub(crate) close_up: Option<CloseUp>,
-    /// Islands that ended too deep and may still be cut finer.
-    pub(crate) too_deep: Vec<u32>,
-}
-
-/// What batches add up for those who ask.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Recorded {
-    Nothing,
-    Impulses,
-    Friction,
-}
-
-impl Run<'_> {
-    fn recorded(&self) -> Recorded {
-        match (&self.close_up, &self.notes) {
-            (Some(_), _) => Recorded::Friction,
-            (None, Some(_)) => Recorded::Impulses,
-            (None, None) => Recorded::Nothing,
-        }
-    }
-}
-
-impl Recorded {
-    fn by(self, batch: &mut Batch) {
-        if self != Recorded::Nothing {
-            batch.record_impulses();
-        }
-        if self == Recorded::Friction {
-            batch.record_friction();
-        }
-    }
 }
 
 /// What a batch is made from, slice after slice.

@@ -5,7 +5,7 @@ mod common;
 use common::{UNIT, cuboid, ground, pyramid, rain, run, world_of};
 use forerun_dynamics::bounds::swept_bound;
 use forerun_dynamics::{
-    BodyDef, BodyId, BodyKind, InspectedBody, InspectedIsland, Inspection, Material, Member, Touches,
+    BodyDef, BodyId, BodyKind, InspectedBody, InspectedIsland, Inspection, Mass, Material, Member, Touches,
     Unobserved, World, inspect,
 };
 use forerun_geometry::{Shape, Vec3};
@@ -114,6 +114,28 @@ fn every_momentum_is_what_contacts_and_gravity_say() {
         }
         assert!(rubbed > 0.1, "{name}: something rubs");
         assert!(name != "ball" || bounced, "the ball bounces");
+    }
+    assert!(slices_max > 1, "a frame is cut");
+}
+
+#[test]
+fn islands_that_are_done_again_in_smaller_parts_are_told_of_once() {
+    let mut ball = BodyDef::new(Shape::sphere(0.5).unwrap()).at(Vec3::new(-1.2, 1.6, 0.0));
+    (ball.mass, ball.velocity) = (Mass::Density(50_000.0), Vec3::X * 30.0);
+    let mut world = world_of(&[pyramid(5), vec![ball]].concat());
+    let (mut touches, mut slices_max) = (Touches::default(), 0);
+    for frame in 0..30 {
+        let inspection = inspected(&world);
+        world.step_touching(&mut Unobserved, &mut touches);
+        let names: Vec<_> = inspection.contacts.iter().map(|c| (c.first, c.second, c.slice)).collect();
+        assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "frame {frame}: {names:?}");
+        let most = inspection.islands.iter().map(|island| island.slices).fold(1, u32::max);
+        assert!(inspection.contacts.iter().all(|contact| contact.slice < most));
+        slices_max = slices_max.max(most);
+        for touch in &touches.list {
+            let impulse = pushed(&inspection, touch.first.0, touch.second.0);
+            assert!((impulse - touch.impulse).abs() <= 1e-4 * touch.impulse, "{touch:?}: {impulse} N s");
+        }
     }
     assert!(slices_max > 1, "a frame is cut");
 }

@@ -136,7 +136,14 @@ fn nonsense_is_refused_by_name() {
         Mesh::new(broken.clone(), triangles.clone()),
         Err(MeshError::NotFinite { vertex: 2, .. })
     ));
-    assert!(Mesh::open(broken, triangles).is_err());
+    assert!(Mesh::open(broken, triangles.clone()).is_err());
+    let mut far = vertices.clone();
+    far[3].x = -2e6;
+    let error = Mesh::new(far, triangles).unwrap_err();
+    assert!(
+        matches!(error, MeshError::TooFar { vertex: 3, .. }) && error.to_string().contains("scale"),
+        "{error}"
+    );
     assert!(matches!(Mesh::new(vertices.clone(), vec![]), Err(MeshError::Empty { dropped: 0 })));
     let points = Mesh::open(vertices.clone(), vec![[0, 0, 1]]).unwrap_err();
     assert!(matches!(points, MeshError::Empty { dropped: 1 }));

@@ -72,7 +72,7 @@ fn areas_have_the_bodies_that_visit_them_and_clocks_that_commands_set_back() {
         });
         let here = here.expect("it is somewhere");
         assert_eq!(here.bounds.max - here.bounds.min, Vec3::splat(2.0));
-        assert_eq!(here.area.map(|c| 2.0 * c as f32), here.bounds.min.to_array());
+        assert_eq!(Vec3::from_array(here.area.map(|c| 2.0 * c as f32)), here.bounds.min);
         // The one that lies, and has come to rest, is not active; the one that falls is.
         assert_eq!(here.active, body == 2, "{here:?}");
     }
@@ -131,7 +131,8 @@ fn commands_that_are_no_longer_kept_are_forgotten_by_later_snapshots() {
     let settings = TimelineSettings { lookahead: 60, past: 5, ..TimelineSettings::default() };
     let mut timeline =
         Timeline::new(&scenes::all().swap_remove(0).1, Environment::default(), settings).unwrap();
-    for frame in [3, 9] {
+    // Commands act after the oldest frame, which is 7 once frame 12 is shown.
+    for frame in [7, 9] {
         timeline.change(Frame(frame), push(4, 100.0)).unwrap();
     }
     run(&mut timeline);
@@ -141,7 +142,7 @@ fn commands_that_are_no_longer_kept_are_forgotten_by_later_snapshots() {
     let frames = |snapshot: &forerun_timeline::Snapshot| -> Vec<u64> {
         snapshot.commands().map(|(key, _)| key.frame.0).collect()
     };
-    assert_eq!((frames(&before), frames(&timeline.snapshot())), (vec![3, 9], vec![9]));
+    assert_eq!((frames(&before), frames(&timeline.snapshot())), (vec![7, 9], vec![9]));
 }
 
 fn previewed(timeline: &Timeline, preview: Preview) -> Result<Previewed, CommandError> {

@@ -158,6 +158,12 @@ impl Camera {
         self.motion.travel(framed);
     }
 
+    /// Whether it moves by itself.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        self.motion.is_under_way()
+    }
+
     /// Ends a journey at once.
     pub fn arrive(&mut self) {
         if let Some(framed) = self.motion.journey(f32::INFINITY, &self.framed()) {

@@ -1,6 +1,6 @@
 //! Desk: what the user works with, without a window: what keys ask for is done here, and what the mouse does.
 
-use forerun::{BodyId, Sample, Vec3};
+use forerun::{BodyId, BodyKind, Sample, Vec3};
 use three_d::Event;
 
 use crate::actions::{Action, action_of};
@@ -120,12 +120,21 @@ fn focus(play: &Play, camera: &mut Camera, bodies: &[BodyId]) {
     }
 }
 
-/// Balls around bodies as they are drawn: those picked, or with none all that has an end.
+/// Balls around bodies as they are drawn: those picked, or with none what moves, and what does not where it is no larger than all that does.
 fn balls_of(play: &Play, bodies: &[BodyId]) -> Vec<(Vec3, f32)> {
-    let samples = play.samples.iter().filter(|(id, _)| bodies.is_empty() || bodies.contains(id));
     let ball = |(id, sample): &(BodyId, Sample)| {
         let body = play.body(*id).filter(|body| body.radius.is_finite())?;
-        Some((sample.pose.transform_point(body.frame.position), body.radius))
+        let ball = (sample.pose.transform_point(body.frame.position), body.radius);
+        Some((*id, body.kind != BodyKind::Fixed, ball))
     };
-    samples.filter_map(ball).collect()
+    let balls = || play.samples.iter().filter_map(ball);
+    if !bodies.is_empty() {
+        return balls().filter(|(id, ..)| bodies.contains(id)).map(|(.., ball)| ball).collect();
+    }
+    let moving: Vec<(Vec3, f32)> = balls().filter(|(_, moves, _)| *moves).map(|(.., ball)| ball).collect();
+    let low = moving.iter().fold(Vec3::INFINITY, |low, (at, radius)| low.min(*at - *radius));
+    let high = moving.iter().fold(Vec3::NEG_INFINITY, |high, (at, radius)| high.max(*at + *radius));
+    let reach = if moving.is_empty() { f32::INFINITY } else { 0.5 * (high - low).length() };
+    let fixed = balls().filter(|(_, moves, (_, radius))| !moves && *radius <= reach);
+    moving.into_iter().chain(fixed.map(|(.., ball)| ball)).collect()
 }

@@ -11,6 +11,7 @@ mod crowd;
 mod extras;
 mod eye;
 mod ghosts;
+mod glass;
 mod ground;
 mod labels;
 mod light;
@@ -23,7 +24,7 @@ mod surface;
 
 pub use colours::{Rgb, legend};
 pub use extras::{Extras, PreviewTrack};
-pub use labels::write_labels;
+pub use labels::{write_failure, write_labels};
 
 use forerun::{FrameInspection, Vec3};
 use three_d::{ClearState, Context, CoreError, RenderTarget, Viewport};
@@ -163,7 +164,7 @@ impl Painter {
     fn fill(&mut self, eye: &Eye, scenery: &Scenery<'_>) {
         let Ok(programs) = &self.programs else { return };
         let light = Light::of(scenery.view.theme);
-        let Bodies { crowd, chosen, surfaces, planes, reach, .. } = &self.bodies;
+        let Bodies { crowd, chosen, glass, surfaces, planes, reach, .. } = &self.bodies;
         let haze_distance = HAZE * (reach + scenery.camera.distance);
         self.ground.draw_sky(programs, eye, light);
         let lit = (light, &self.shadows, haze_distance);
@@ -176,7 +177,7 @@ impl Painter {
         crowd.draw(program, SOLID, eye.viewport, surfaces);
         let corners = &self.ground.corners;
         self.slice.draw(programs, eye, corners);
-        self.ghosts.draw(programs, eye, surfaces);
+        self.ghosts.draw(programs, eye, (glass, surfaces));
         self.line_drawer.draw(programs, eye, &mut self.lines);
         if !chosen.is_empty() {
             self.outline.draw(programs, eye, corners, light.outline);

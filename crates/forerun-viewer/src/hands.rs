@@ -6,7 +6,7 @@ mod missile;
 mod sight;
 mod throw;
 
-use forerun::{Change, Shape};
+use forerun::{BodyId, Change, Shape};
 use three_d::{Event, Modifiers, MouseButton};
 
 use crate::camera::Camera;
@@ -37,6 +37,10 @@ pub struct Hands {
     doing: Doing,
     /// Where the mouse is. Pixels from the left and the bottom.
     pointer: Option<[f32; 2]>,
+    /// Whether it moved since the last picture.
+    moved: bool,
+    /// The body under it when it moved last.
+    pointed: Option<BodyId>,
     modifiers: Modifiers,
     missiles: Missiles,
     /// The scene that the hands are in.
@@ -53,7 +57,7 @@ impl Hands {
         view: &View,
     ) {
         if self.opened != opened {
-            (self.doing, self.opened) = (Doing::Nothing, opened);
+            (self.doing, self.pointed, self.opened) = (Doing::Nothing, None, opened);
         }
         self.extras = Extras::default();
         let size = [input.viewport.width.max(1) as f32, input.viewport.height.max(1) as f32];
@@ -78,6 +82,7 @@ impl Hands {
                 *handled = true;
             }
             Event::MouseMotion { position, modifiers, handled, .. } => {
+                self.moved = true;
                 self.pointer = Some([position.x, position.y]);
                 self.modifiers = *modifiers;
                 *handled |= self.is_busy();
@@ -136,7 +141,13 @@ impl Hands {
             }
             Doing::Aiming => throw::aim(&mut self.extras, play, (&mut self.missiles, view), (sight, pointer)),
             Doing::Nothing if view.grip.tool == Tool::Throw => {}
-            Doing::Nothing => self.extras.pointed = sight.hit(play, pointer).map(|hit| hit.body),
+            Doing::Nothing => {
+                // A look at all bodies: not for a mouse that lies still.
+                if std::mem::take(&mut self.moved) {
+                    self.pointed = sight.hit(play, pointer).map(|hit| hit.body);
+                }
+                self.extras.pointed = self.pointed;
+            }
         }
     }
 
@@ -182,7 +193,7 @@ impl Hands {
 
     /// The body that is dragged.
     #[must_use]
-    pub fn dragged(&self) -> Option<forerun::BodyId> {
+    pub fn dragged(&self) -> Option<BodyId> {
         match &self.doing {
             Doing::Dragging(drag) => drag.moves().then(|| drag.body()),
             _ => None,

@@ -19,7 +19,7 @@ pub use native::{
 };
 
 #[cfg(target_arch = "wasm32")]
-pub use web::{Host, Link, Starting};
+pub use web::{Host, Link, Starting, remote_settings, timeline_settings};
 #[cfg(target_arch = "wasm32")]
 pub use web_files::{
     Choosing, FilmWriter, Saving, Watch, choose_scene, load_settings, save_picture, save_settings, save_text,

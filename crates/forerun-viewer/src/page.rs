@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use forerun::scene::Format;
 use three_d::{Window, WindowSettings};
 
-use crate::host::{self, Host, SceneSource};
+use crate::host::{Host, SceneSource, load_settings};
 use crate::report::Report;
 use crate::settings::Settings;
 use crate::viewer::Viewer;
@@ -24,7 +24,8 @@ thread_local! {
 pub fn run(source: SceneSource, host: Host) -> Result<(), String> {
     let settings = WindowSettings { title: "forerun".to_owned(), ..WindowSettings::default() };
     let window = Window::new(settings).map_err(|error| error.to_string())?;
-    let mut viewer = Viewer::new(&window.gl(), host, source, settings_of_page());
+    let settings = Settings::of_text(&load_settings().unwrap_or_default());
+    let mut viewer = Viewer::new(&window.gl(), host, source, settings);
     window.render_loop(move |frame| {
         for source in GIVEN.take() {
             viewer.session.open(source);
@@ -34,11 +35,6 @@ pub fn run(source: SceneSource, host: Host) -> Result<(), String> {
         output
     });
     Ok(())
-}
-
-/// What the browser keeps of earlier visits.
-fn settings_of_page() -> Settings {
-    Settings::of_text(&host::load_settings().unwrap_or_default())
 }
 
 /// Opens a scene file by its content at the next picture.

@@ -101,7 +101,8 @@ impl Panels {
         let Some(play) = board.session.play_mut() else { return };
         ui.add_space(3.0);
         transport::show(ui, play, palette, wishes);
-        let place = self.strip.show(ui, play, scene, palette);
+        let there = !play.is_coupled();
+        let place = ui.add_enabled_ui(there, |ui| self.strip.show(ui, play, scene, palette)).inner;
         board.session.strip = Some(place);
         ui.add_space(2.0);
     }

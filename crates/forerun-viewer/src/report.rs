@@ -312,12 +312,8 @@ fn in_sight(play: &Play, reported: &Reported<'_>) -> Vec<SightReport> {
 
 /// Where a point of the world is in the picture, from its top left corner; none behind the eye.
 fn pixel_of(camera: &Camera, [width, height]: [f32; 2], point: Vec3) -> Option<[f32; 2]> {
-    let from_eye = point - camera.eye();
-    let depth = from_eye.dot(camera.forward());
-    let half = (0.5 * camera.angle()).tan();
-    let across = |axis: Vec3| from_eye.dot(axis) / (depth * half);
-    let (x, y) = (across(camera.right()) * height / width, across(camera.up()));
-    (depth > 0.0).then(|| [0.5 * (x + 1.0) * width, 0.5 * (1.0 - y) * height])
+    let [x, y] = camera.project(point, width / height)?;
+    Some([0.5 * (x + 1.0) * width, 0.5 * (1.0 - y) * height])
 }
 
 #[cfg(test)]

@@ -5,6 +5,8 @@ use forerun::{Shape, Vec3};
 
 /// Segments of a full turn.
 const TURN: u32 = 40;
+/// And where there are many bodies.
+const COARSE_TURN: u32 = 18;
 /// Cosine of the angle between two faces (35 degrees) up to which the edge between them is drawn round.
 const ROUND: f32 = 0.82;
 /// Vertices with more faces than this keep the normals of their faces: looking at all pairs would take long.
@@ -27,17 +29,30 @@ struct Triangles {
 }
 
 /// The surface of a shape in its own frame. None for half-spaces, which have no end.
+#[must_use]
 pub fn facets(shape: &Shape) -> Vec<Facet> {
+    facets_of(shape, TURN)
+}
+
+/// The surface of a shape as it is drawn where there are many: what is round is less so.
+#[must_use]
+pub fn coarse_facets(shape: &Shape) -> Vec<Facet> {
+    facets_of(shape, COARSE_TURN)
+}
+
+/// With so many segments of a full turn: an even number.
+fn facets_of(shape: &Shape, turn: u32) -> Vec<Facet> {
     let triangles = match shape {
         Shape::HalfSpace => Triangles::default(),
-        Shape::Sphere(sphere) => turned(&half_circle(sphere.radius, 0.0)),
-        Shape::Capsule(Capsule { half_height, radius }) => turned(&half_circle(*radius, *half_height)),
-        Shape::Cylinder(Cylinder { half_height, radius }) => turned(&[
-            [0.0, *half_height],
-            [*radius, *half_height],
-            [*radius, -half_height],
-            [0.0, -half_height],
-        ]),
+        Shape::Sphere(sphere) => turned(&half_circle(sphere.radius, 0.0, turn), turn),
+        Shape::Capsule(Capsule { half_height, radius }) => {
+            turned(&half_circle(*radius, *half_height, turn), turn)
+        }
+        Shape::Cylinder(Cylinder { half_height, radius }) => {
+            let line =
+                [[0.0, *half_height], [*radius, *half_height], [*radius, -half_height], [0.0, -half_height]];
+            turned(&line, turn)
+        }
         Shape::Cuboid(cuboid) => block(cuboid.half_extents),
         Shape::Hull(hull) => {
             let corners: Vec<Vec3> = hull.triangles().flatten().collect();
@@ -52,7 +67,7 @@ pub fn facets(shape: &Shape) -> Vec<Facet> {
             let parts = compound.parts.iter();
             return parts
                 .flat_map(|(pose, part)| {
-                    facets(part).into_iter().map(|facet| Facet {
+                    facets_of(part, turn).into_iter().map(|facet| Facet {
                         corners: facet.corners.map(|corner| pose.transform_point(corner)),
                         normals: facet.normals.map(|normal| pose.rotation * normal),
                     })
@@ -64,8 +79,8 @@ pub fn facets(shape: &Shape) -> Vec<Facet> {
 }
 
 /// Half a circle as (distance from the y axis, height), its halves moved apart.
-fn half_circle(radius: f32, half_height: f32) -> Vec<[f32; 2]> {
-    let parts = TURN / 2;
+fn half_circle(radius: f32, half_height: f32, turn: u32) -> Vec<[f32; 2]> {
+    let parts = turn / 2;
     (0..=parts)
         .map(|i| {
             let (sin, cos) = (f64::from(i) * std::f64::consts::PI / f64::from(parts)).sin_cos();
@@ -76,18 +91,18 @@ fn half_circle(radius: f32, half_height: f32) -> Vec<[f32; 2]> {
 }
 
 /// The surface that a line, from the upper to the lower end of the y axis, makes when it turns about it.
-fn turned(line: &[[f32; 2]]) -> Triangles {
+fn turned(line: &[[f32; 2]], turn: u32) -> Triangles {
     let mut made = Triangles::default();
     for [out, height] in line {
-        for k in 0..TURN {
-            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / f64::from(TURN)).sin_cos();
+        for k in 0..turn {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / f64::from(turn)).sin_cos();
             made.vertices.push(Vec3::new(out * cos as f32, *height, out * sin as f32));
         }
     }
     for row in 0..line.len() as u32 - 1 {
-        for k in 0..TURN {
-            let (a, b) = (row * TURN + k, row * TURN + (k + 1) % TURN);
-            made.triangles.extend([[a, b, b + TURN], [a, b + TURN, a + TURN]]);
+        for k in 0..turn {
+            let (a, b) = (row * turn + k, row * turn + (k + 1) % turn);
+            made.triangles.extend([[a, b, b + turn], [a, b + turn, a + turn]]);
         }
     }
     made

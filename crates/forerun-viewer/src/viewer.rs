@@ -8,7 +8,7 @@ use crate::actions::Action;
 use crate::camera::Camera;
 use crate::capture::{Capture, Drawn, Want};
 use crate::desk::{Desk, keys_of};
-use crate::draw::{Painter, Scenery, needs_inspection, write_labels};
+use crate::draw::{Painter, Scenery, needs_inspection, write_failure, write_labels};
 use crate::hands::{Hands, take_flight};
 use crate::host::{Host, SceneSource};
 use crate::input::Input;
@@ -125,7 +125,7 @@ impl Viewer {
             Stage::Loading(_) => false,
             Stage::Failed(_) => true,
         };
-        resting && !self.capture.is_busy() && !self.camera.motion.is_moving()
+        resting && !self.capture.is_busy() && !self.camera.is_moving()
     }
 
     /// Does what a key, a menu or a button asks for.
@@ -179,12 +179,15 @@ impl Viewer {
     }
 
     fn show_panels(&mut self, input: &mut Input) -> Vec<Wish> {
-        let Viewer { gui, session, view, camera, hands, keeper, series, capture, panels, .. } = self;
+        let Viewer { gui, session, view, camera, hands, keeper, series, capture, panels, painter, .. } = self;
         let mut wishes = Vec::new();
         let scale = input.pixels_per_point * view.scale;
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
             if let Some(scenery) = scenery(session, camera, view, hands) {
                 write_labels(ui.ctx(), &scenery);
+            }
+            if let Some(why) = painter.failure() {
+                write_failure(ui.ctx(), why);
             }
             let mut board = Board { session, view, settings: &mut keeper.settings, series, capture };
             wishes = panels.show(ui, &mut board);

@@ -58,7 +58,7 @@ fn a_body_is_dragged_by_a_spring_and_one_undo_puts_all_back() {
     drag(&mut user, from, [-100.0, -80.0]);
     user.settle();
     // A hundred pixels to the left at this distance, and eighty up.
-    let per_pixel = 2.0 * (0.5 * user.camera.angle()).tan() * user.camera.distance / 720.0;
+    let per_pixel = 2.0 * user.camera.half_height() * user.camera.distance / 720.0;
     let dragged = user.pose_at(HANGING, 28).position - start;
     let asked = Vec3::new(-100.0, 80.0, 0.0) * per_pixel;
     assert!((dragged - asked).dot(Vec3::X).abs() < 0.5 * asked.x.abs(), "{dragged} where {asked} was asked");

@@ -81,7 +81,7 @@ fn slow_physics_delays_no_picture() {
 fn under_the_traditional_driver_it_does() {
     let (longest_s, pictures) = longest(0.2, true, 2.0);
     assert!(longest_s >= 0.2, "{longest_s} s");
-    assert!(pictures <= 10, "{pictures} pictures");
+    assert!(pictures < 15, "{pictures} pictures");
 }
 
 #[test]

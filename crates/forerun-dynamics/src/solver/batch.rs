@@ -168,16 +168,6 @@ impl<'a> Batch<'a> {
         ContactList { ends: &self.ends, found: self.found }
     }
 
-    /// Has what contacts push with added up. The classic shock propagation's impulses, which act on velocities, are not among it.
-    pub(crate) fn record_impulses(&mut self) {
-        fill(&mut self.impulses, self.ends.len(), [0.0; 4]);
-    }
-
-    /// Has what contacts rub with added up too. Asks for [`Batch::record_impulses`].
-    pub(crate) fn record_friction(&mut self) {
-        fill(&mut self.frictions, self.ends.len(), Vec3::ZERO);
-    }
-
     /// Who rests on whom, once stage 3 is over.
     pub(crate) fn graph(&self) -> &ContactGraph {
         &self.graph

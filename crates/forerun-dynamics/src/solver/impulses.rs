@@ -4,9 +4,11 @@
 
 use forerun_geometry::Vec3;
 
+use super::batch::Batch;
 use super::blocks::{Arranged, Block, NO_CONTACT};
 use super::points::Kind;
 use crate::lanes::{LANES, Lanes};
+use crate::scratch::fill;
 
 /// Normal impulses of the points of each contact of a batch, summed over a frame or slice. N s. Empty where nobody asks.
 pub(crate) type ImpulseSums = Vec<[f32; 4]>;
@@ -19,6 +21,18 @@ pub(crate) type FrictionSums = Vec<Vec3>;
 pub(crate) struct Sums<'a> {
     pub(crate) normal: &'a mut [[f32; 4]],
     pub(crate) friction: &'a mut [Vec3],
+}
+
+impl Batch<'_> {
+    /// Has what contacts push with added up. The classic shock propagation's impulses, which act on velocities, are not among it.
+    pub(crate) fn record_impulses(&mut self) {
+        fill(&mut self.impulses, self.ends.len(), [0.0; 4]);
+    }
+
+    /// Has what contacts rub with added up too. Asks for [`Batch::record_impulses`].
+    pub(crate) fn record_friction(&mut self) {
+        fill(&mut self.frictions, self.ends.len(), Vec3::ZERO);
+    }
 }
 
 /// Adds the impulses of a substep, once it is over.

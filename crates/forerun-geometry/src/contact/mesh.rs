@@ -11,6 +11,7 @@ use super::{Manifold, Placed};
 use crate::Shape;
 
 mod candidates;
+mod course;
 mod directions;
 mod look_up;
 mod points;

@@ -1,18 +1,45 @@
-//! Blur: the cells of a field whose interpolation cuts sharp edges off.
+//! Blur: the cells of a field whose interpolation cuts sharp edges off, and the triangles that are near them.
 //!
 //! Between its nodes a grid takes the mean of the sides of an edge: the surface seems to be up to a third of a cell
 //! farther away than it is. Contact asks the triangles in these cells.
+//!
+//! Promise: the triangles of a cell hold the surface's nearest point for every point of the cell.
+
+use std::collections::BTreeMap;
+
+use forerun_lanes::{LANES, Lanes, Portable, V8, dispatched};
+use glam::DVec3;
+use rayon::prelude::*;
 
 use super::Field;
+use super::eight::lane;
+use super::facets::{Facets, ROWS, Seen};
+use super::nearest::{Nearest, near_triangles, nearest, triangle_distance};
 use crate::Vec3;
+use crate::shape::Mesh;
 
 /// The cells around the sharp edges of a mesh; none where all is smooth.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Blur {
     /// One bit a cell; nothing where no edge is sharp.
     cells: Vec<u64>,
+    /// How many cells are marked before each 64 of them.
+    before: Vec<u32>,
+    /// Of each marked cell the triangles that may be nearest to its points.
+    runs: Vec<Run>,
+    /// Triangles by their first rows. The last one of a run fills its last eight up.
+    triangles: Vec<[u32; LANES]>,
+    /// The triangles themselves.
+    pub(crate) facets: Facets,
     /// How far off its surface the field sees points of sharp edges. Metres.
     pub(crate) depth: f32,
+}
+
+/// A run of eights of triangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Run {
+    first: u32,
+    count: u32,
 }
 
 /// Points along an edge in a cell.
@@ -21,10 +48,12 @@ const PER_CELL: f32 = 2.0;
 const POINTS_MAX: f32 = 65_536.0;
 /// Edges may be worse between the points than at them.
 const SPARE: f32 = 1.25;
+/// Triangles are looked for this much farther away than they need be, for what rounding may lose.
+const ROUNDING: f64 = 1.0001;
 
 impl Blur {
     /// Marks the cells that edges pass through, and those next to them.
-    pub(crate) fn new(field: &Field, edges: &[[Vec3; 2]]) -> Blur {
+    pub(crate) fn new(mesh: &Mesh, field: &Field, edges: &[[Vec3; 2]]) -> Blur {
         let mut blur = Blur::default();
         if edges.is_empty() {
             return blur;
@@ -39,6 +68,7 @@ impl Blur {
                 blur.mark_around(field, point);
             }
         }
+        blur.list_triangles(mesh, field);
         blur
     }
 
@@ -55,23 +85,153 @@ impl Blur {
         }
     }
 
+    /// Finds the triangles of the marked cells. Cells of the same triangles share a list.
+    fn list_triangles(&mut self, mesh: &Mesh, field: &Field) {
+        let words = self.cells.par_iter().enumerate();
+        let lists: Vec<Vec<Vec<u32>>> = words.map(|(k, word)| lists_of(mesh, field, k * 64, *word)).collect();
+        let mut known: BTreeMap<Vec<u32>, Run> = BTreeMap::new();
+        for lists in lists {
+            self.before.push(self.runs.len() as u32);
+            for list in lists {
+                let first = self.triangles.len() as u32;
+                let eights = list.chunks(LANES);
+                let run = Run { first, count: eights.len() as u32 };
+                let filled = eights.map(|e| std::array::from_fn(|i| ROWS * e[i.min(e.len() - 1)]));
+                let run = match known.get(&list) {
+                    Some(run) => *run,
+                    None => {
+                        self.triangles.extend(filled);
+                        known.insert(list, run);
+                        run
+                    }
+                };
+                self.runs.push(run);
+            }
+        }
+        self.facets = Facets::new(mesh);
+    }
+
     /// Whether there is any sharp edge.
     pub(crate) fn is_any(&self) -> bool {
         !self.cells.is_empty()
     }
 
-    /// Whether the field is blurred at a point of its frame.
-    pub(crate) fn is_at(&self, field: &Field, point: Vec3) -> bool {
+    /// The triangles that may be nearest to a point of the field's frame, if the field is blurred there.
+    #[inline]
+    fn triangles_at(&self, field: &Field, point: Vec3) -> Option<&[[u32; LANES]]> {
         if !field.contains(point) {
-            return false;
+            return None;
         }
         let ([nx, ny, _], [x, y, z]) = (field.cells(), field.cell_of(point));
         let index = (z * ny + y) * nx + x;
-        self.cells[index / 64] >> (index % 64) & 1 == 1
+        let (word, bit) = (self.cells[index / 64], 1_u64 << (index % 64));
+        if word & bit == 0 {
+            return None;
+        }
+        let place = self.before[index / 64] + (word & (bit - 1)).count_ones();
+        let run = self.runs[place as usize];
+        Some(&self.triangles[run.first as usize..][..run.count as usize])
     }
 
-    /// Memory that the cells take.
+    /// Memory that it takes.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&*self.cells)
+            + size_of_val(&*self.before)
+            + size_of_val(&*self.runs)
+            + size_of_val(&*self.triangles)
+            + self.facets.bytes()
+    }
+}
+
+/// Points of a field's frame: which of eight are asked about.
+pub(crate) struct Asked<'a> {
+    pub(crate) field: &'a Field,
+    pub(crate) points: &'a V8<Portable>,
+    /// Their bits.
+    pub(crate) bits: u32,
+}
+
+dispatched! {
+    /// Fills in what is nearest to those of the points at which the field is blurred; their bits are `known`.
+    pub(crate) fn see(blur: &Blur, asked: &Asked, seen: &mut [Seen; LANES], known: &mut u32) => see_lanes
+}
+
+#[inline(always)]
+fn see_lanes<F: Lanes>(blur: &Blur, asked: &Asked, seen: &mut [Seen; LANES], known: &mut u32) {
+    let mut bits = asked.bits;
+    *known = 0;
+    while bits != 0 {
+        let i = bits.trailing_zeros() as usize;
+        bits &= bits - 1;
+        let point = lane(asked.points, i);
+        if let Some(triangles) = blur.triangles_at(asked.field, point) {
+            seen[i] = blur.facets.nearest::<F>(triangles, point);
+            *known |= 1 << i;
+        }
+    }
+}
+
+/// The triangles of each of up to 64 cells that are marked.
+fn lists_of(mesh: &Mesh, field: &Field, first: usize, word: u64) -> Vec<Vec<u32>> {
+    let [nx, ny, _] = field.cells();
+    let mut guess = None;
+    let marked = (0..64).filter(|bit| word >> bit & 1 == 1).map(|bit| first + bit);
+    marked
+        .map(|index| list_of([index % nx, index / nx % ny, index / nx / ny], mesh, field, &mut guess))
+        .collect()
+}
+
+/// The triangles that may be nearest to points of a cell, in the order of their numbers. `guess` is for the next one.
+fn list_of(cell: [usize; 3], mesh: &Mesh, field: &Field, guess: &mut Option<Nearest>) -> Vec<u32> {
+    let size = field.cell_size();
+    let low = field.bounds().min + Vec3::from_array(cell.map(|k| k as f32)) * size;
+    // What is nearest to a point of a ball is no farther from its middle than what is nearest to that, and its diameter.
+    let diameter = ROUNDING * f64::from(size.length());
+    let middle = (low + size * 0.5).as_dvec3();
+    let near = nearest(mesh, middle, guess.as_ref());
+    let mut list = near_triangles(mesh, middle, near.distance() + diameter);
+    *guess = Some(near);
+    if list.len() > LANES {
+        // Most of a long list goes if each eighth of the cell is looked at by itself.
+        let mut kept = vec![false; list.len()];
+        for k in 0..8_u8 {
+            let part = DVec3::from_array([0, 1, 2].map(|axis| f64::from(1 + 2 * (k >> axis & 1))));
+            let middle = low.as_dvec3() + size.as_dvec3() * (0.25 * part);
+            let distances: Vec<f64> = list.iter().map(|t| triangle_distance(mesh, *t, middle)).collect();
+            let limit = distances.iter().copied().fold(f64::INFINITY, f64::min) + 0.5 * diameter;
+            kept.iter_mut().zip(&distances).for_each(|(kept, distance)| *kept |= *distance <= limit);
+        }
+        let mut kept = kept.into_iter();
+        list.retain(|_| kept.next() == Some(true));
+    }
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::mesh_make;
+
+    #[test]
+    fn the_triangles_of_a_cell_hold_the_nearest_point() {
+        let mesh = mesh_make::cuboid(Vec3::new(0.3, 0.2, 0.05)).unwrap();
+        let (field, blur) = (mesh.collider().field.as_ref().unwrap(), &mesh.collider().blur);
+        let mut known_in_all = 0;
+        for i in 0..20_000_u32 {
+            let part = |k: u32| ((i * 7919 + i * i % 613 * k * 104_729) % 4001) as f32 / 2000.0 - 1.0;
+            let point = Vec3::new(part(1), part(2), part(3)) * Vec3::new(0.35, 0.25, 0.1);
+            let points = V8::splat(point.to_array());
+            let (mut seen, mut known) = ([Seen::NOTHING; LANES], 0);
+            see(blur, &Asked { field, points: &points, bits: 2 }, &mut seen, &mut known);
+            if known == 2 {
+                let q = point.abs() - Vec3::new(0.3, 0.2, 0.05);
+                let expected = q.max(Vec3::ZERO).length() + q.max_element().min(0.0);
+                let skin = crate::sdf::nearest::Skin::of(&mesh);
+                let (distance, _) = seen[1].signed(&skin, &blur.facets);
+                assert!((distance - expected).abs() < 1e-6, "{distance} at {point}, {expected}");
+                known_in_all += 1;
+            }
+        }
+        assert!(known_in_all > 1000, "{known_in_all}");
     }
 }

@@ -87,7 +87,6 @@ impl Field {
     }
 
     /// Distances between neighbouring nodes along x, y and z. Metres.
-    #[cfg(test)]
     pub(super) fn cell_size(&self) -> Vec3 {
         self.cell
     }

@@ -14,6 +14,7 @@ mod blocks;
 pub(crate) mod blur;
 mod crossing;
 pub(crate) mod eight;
+pub(crate) mod facets;
 mod field;
 mod field_storage;
 pub(crate) mod kept;
@@ -80,8 +81,13 @@ impl MeshCollider {
         let samples = Samples::new(points);
         let ridges = long_ridges(mesh, &edges);
         let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
-        let sharp = sharp_edges(mesh, &normals);
-        let blur = field.as_ref().map_or_else(Blur::default, |field| Blur::new(field, &sharp));
+        let blur = match &field {
+            // The triangles of a mended mesh do not tell its sides.
+            Some(field) if mesh.enclosure != Enclosure::Mended => {
+                Blur::new(mesh, field, &sharp_edges(mesh, &normals))
+            }
+            _ => Blur::default(),
+        };
         MeshCollider { field, samples, ridges, radius, moments, blur, normals }
     }
 

@@ -18,7 +18,7 @@ pub(crate) struct Skin<'a> {
 
 /// The part of a triangle that a point lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Feature {
+pub(crate) enum Feature {
     Face,
     Edge(usize),
     Corner(usize),
@@ -54,13 +54,6 @@ pub(crate) struct Signed {
     pub(crate) gradient: Vec3,
     /// Whether the surface ends at the nearest point.
     pub(crate) on_boundary: bool,
-}
-
-impl Nearest {
-    /// Whether the nearest point is inside a triangle, not on an edge or corner.
-    pub(crate) fn is_on_face(&self) -> bool {
-        self.feature == Feature::Face
-    }
 }
 
 /// Points this near to the surface are on it: poses are no better known. Metres.
@@ -99,29 +92,6 @@ impl<'a> Skin<'a> {
         Signed { distance: sign * length, gradient: gradient.as_vec3(), on_boundary }
     }
 
-    /// Of the planes of the triangles at the nearest point the one that faces `outwards` best: distance and normal.
-    ///
-    /// At a corner it is one of the triangle that was found and those next to it.
-    pub(crate) fn facing(&self, point: DVec3, nearest: &Nearest, outwards: DVec3) -> (f32, Vec3) {
-        let own = face_normal(self.mesh, nearest.triangle);
-        let edges = match nearest.feature {
-            Feature::Face => [None, None],
-            Feature::Edge(k) => [Some(k), None],
-            Feature::Corner(k) => [Some(k), Some((k + 2) % 3)],
-        };
-        let mut best = own;
-        for k in edges.into_iter().flatten() {
-            let edge = self.normals.triangle_edges[nearest.triangle][k] as usize;
-            // The normal of the edge is halfway between those of its two triangles.
-            let middle = self.normals.edge_normals[edge].as_dvec3();
-            let other = middle * (2.0 * own.dot(middle)) - own;
-            let is_better = self.normals.edge_kinds[edge] != EdgeKind::Boundary
-                && other.dot(outwards) < best.dot(outwards) - 1e-6;
-            best = if is_better { other } else { best };
-        }
-        ((point - nearest.point).dot(best) as f32, best.as_vec3())
-    }
-
     /// [`Skin::signed`] of the nearest point.
     pub(crate) fn look_up(&self, point: Vec3) -> Signed {
         let point = point.as_dvec3();
@@ -143,6 +113,26 @@ pub(crate) fn nearest(mesh: &Mesh, point: DVec3, guess: Option<&Nearest>) -> Nea
     };
     mesh.tree().walk(distance, visit, limit);
     best
+}
+
+/// The triangles no farther from a point than a limit (metres), in the order of their numbers.
+pub(crate) fn near_triangles(mesh: &Mesh, point: DVec3, limit: f64) -> Vec<u32> {
+    let mut found = Vec::new();
+    let distance = |bounds: &Aabb| Some(distance_squared(bounds, point));
+    let visit = |triangle: u32| {
+        if triangle_distance(mesh, triangle, point) <= limit {
+            found.push(triangle);
+        }
+        limit * limit
+    };
+    mesh.tree().walk(distance, visit, limit * limit);
+    found.sort_unstable();
+    found
+}
+
+/// How far a triangle is from a point. Metres.
+pub(crate) fn triangle_distance(mesh: &Mesh, triangle: u32, point: DVec3) -> f64 {
+    nearest_on(mesh, triangle as usize, point).distance()
 }
 
 fn nearest_on(mesh: &Mesh, triangle: usize, point: DVec3) -> Nearest {

@@ -2,9 +2,8 @@
 //!
 //! Promise: every stretch is in a sphere of its block, and as long as the shape is thick at most.
 
-use forerun_lanes::{LANES, Lanes, Portable, V8};
+use forerun_lanes::{LANES, Lanes, Row, V8};
 
-use super::eight::of_vectors;
 use super::samples::{Spheres, sort_by_place};
 use crate::Vec3;
 
@@ -18,24 +17,26 @@ pub(crate) struct Ridge {
     pub(crate) facing_max: f32,
 }
 
-/// Eight stretches. Those that only fill the block up repeat the last.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct EightRidges {
-    /// Both ends.
-    pub(crate) ends: [V8<Portable>; 2],
-    pub(crate) normals: V8<Portable>,
-    pub(crate) facing_max: Portable,
-    /// The bits of those that are meant.
-    pub(crate) meant: u32,
+/// Eight stretches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EightRidges<F> {
+    pub(crate) from: V8<F>,
+    pub(crate) to: V8<F>,
+    pub(crate) normals: V8<F>,
+    pub(crate) facing_max: F,
 }
 
 /// Stretches in blocks of 8.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Ridges {
-    pub(crate) blocks: Vec<EightRidges>,
+    /// Of each stretch both ends, and [`Ridge::facing_max`]; then the normal.
+    rows: Vec<Row>,
     /// Spheres around the blocks: lane l of the k-th eight is block 8 k + l.
-    pub(crate) spheres: Vec<Spheres>,
+    spheres: Vec<Spheres>,
 }
+
+/// Rows that a stretch takes.
+const ROWS: usize = 2;
 
 impl Ridge {
     /// Metres.
@@ -63,33 +64,67 @@ impl Ridges {
 
     /// Replaces all by the given stretches, in the order given.
     pub(crate) fn fill(&mut self, ridges: &[Ridge]) {
-        self.blocks.clear();
-        self.blocks.extend(ridges.chunks(LANES).map(EightRidges::new));
+        self.rows.clear();
+        self.rows.extend(ridges.iter().flat_map(|r| {
+            let ([a, b], n) = (r.ends, r.normal);
+            [
+                Row([a.x, a.y, a.z, b.x, b.y, b.z, r.facing_max, 0.0]),
+                Row([n.x, n.y, n.z, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            ]
+        }));
         self.spheres.clear();
         let eights = ridges.chunks(LANES * LANES);
         self.spheres.extend(eights.map(|eight| Spheres::around(eight, LANES, |r| r.ends)));
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Spheres around eight blocks each: lane l of the k-th is around block 8 k + l.
+    #[inline(always)]
+    pub(crate) fn spheres(&self) -> &[Spheres] {
+        &self.spheres
+    }
+
+    /// The numbers of eight stretches from the given one on, and the bits of those that there are: the last one fills them up.
+    #[inline(always)]
+    pub(crate) fn run(&self, first: usize) -> ([u32; LANES], u32) {
+        let count = self.rows.len() / ROWS;
+        let mut which = [0; LANES];
+        for (i, which) in which.iter_mut().enumerate() {
+            *which = (first + i).min(count - 1) as u32;
+        }
+        (which, (1_u32 << (count - first).min(LANES)) - 1)
+    }
+
+    /// Eight stretches by their numbers.
+    #[inline(always)]
+    pub(crate) fn eight<F: Lanes>(&self, which: &[u32; LANES]) -> EightRidges<F> {
+        let mut rows = *which;
+        for row in &mut rows {
+            *row *= ROWS as u32;
+        }
+        let [ax, ay, az, bx, by, bz, facing_max, _] = F::gather(&self.rows, &rows);
+        let [nx, ny, nz, ..] = F::gather(&self.rows[1..], &rows);
+        EightRidges {
+            from: V8 { x: ax, y: ay, z: az },
+            to: V8 { x: bx, y: by, z: bz },
+            normals: V8 { x: nx, y: ny, z: nz },
+            facing_max,
+        }
+    }
+
     /// Memory that they take.
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&*self.blocks) + size_of_val(&*self.spheres)
-    }
-}
-
-impl EightRidges {
-    fn new(ridges: &[Ridge]) -> EightRidges {
-        let eight: [Ridge; LANES] = std::array::from_fn(|i| ridges[i.min(ridges.len() - 1)]);
-        EightRidges {
-            ends: [0, 1].map(|end| of_vectors(&eight.map(|r| r.ends[end]))),
-            normals: of_vectors(&eight.map(|r| r.normal)),
-            facing_max: Portable::from_array(eight.map(|r| r.facing_max)),
-            meant: (1 << ridges.len()) - 1,
-        }
+        size_of_val(&*self.rows) + size_of_val(&*self.spheres)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use forerun_lanes::Portable;
+
     use super::*;
     use crate::sdf::eight::lane;
 
@@ -105,10 +140,12 @@ mod tests {
         assert!(given.iter().all(|r| r.ends[0].distance(r.ends[1]) <= 0.7501));
         let ridges = Ridges::new(given.clone());
         let mut found = Vec::new();
-        for (k, block) in ridges.blocks.iter().enumerate() {
-            let (spheres, l) = (&ridges.spheres[k / LANES], k % LANES);
-            for i in (0..LANES).filter(|i| block.meant >> i & 1 == 1) {
-                let ends = block.ends.map(|end| lane(&end, i));
+        for first in (0..given.len()).step_by(LANES) {
+            let (which, meant) = ridges.run(first);
+            let (eight, block) = (ridges.eight::<Portable>(&which), first / LANES);
+            let (spheres, l) = (&ridges.spheres()[block / LANES], block % LANES);
+            for i in (0..LANES).filter(|i| meant >> i & 1 == 1) {
+                let ends = [eight.from, eight.to].map(|end| lane(&end, i));
                 assert!(
                     ends.iter().all(|e| e.distance(lane(&spheres.centre, l)) <= spheres.radius.to_array()[l])
                 );

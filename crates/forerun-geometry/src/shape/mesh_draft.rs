@@ -17,6 +17,9 @@ use crate::sdf::nearest::Skin;
 use crate::sdf::pseudo_normals::PseudoNormals;
 use crate::sdf::{BakeProgress, Field};
 
+/// Farther out along an axis, positions are rounded to decimetres, and mass and inertia soon are no `f32` any more. Metres.
+const POSITION_MAX_M: f32 = 1e6;
+
 /// How a mesh is to be made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeshOptions {
@@ -238,6 +241,9 @@ type Parts = (Vec<Vec3>, Vec<[u32; 3]>, MeshRepairs);
 fn clean(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Parts, MeshError> {
     if let Some(vertex) = vertices.iter().position(|v| !v.is_finite()) {
         return Err(MeshError::NotFinite { vertex, position: vertices[vertex] });
+    }
+    if let Some(vertex) = vertices.iter().position(|v| v.abs().max_element() > POSITION_MAX_M) {
+        return Err(MeshError::TooFar { vertex, position: vertices[vertex], most: POSITION_MAX_M });
     }
     for (triangle, corners) in triangles.iter().enumerate() {
         if let Some(&index) = corners.iter().find(|i| **i as usize >= vertices.len()) {

@@ -144,6 +144,15 @@ pub enum MeshError {
         /// Its position.
         position: Vec3,
     },
+    /// A vertex is farther from the origin than positions are exact, and masses finite.
+    TooFar {
+        /// Its index.
+        vertex: usize,
+        /// Its position. Metres.
+        position: Vec3,
+        /// How far along each axis is allowed. Metres.
+        most: f32,
+    },
     /// A triangle names a vertex that does not exist.
     IndexOutOfRange {
         /// Index of the triangle.
@@ -201,6 +210,10 @@ impl fmt::Display for MeshError {
             MeshError::NotFinite { vertex, position } => {
                 write!(f, "vertex {vertex} is {position}; positions must be finite numbers")
             }
+            MeshError::TooFar { vertex, position, most } => write!(
+                f,
+                "vertex {vertex} is at {position}, beyond {most:e} m; scale the mesh (its unit may not be the metre), or move it to the origin"
+            ),
             MeshError::IndexOutOfRange { triangle, index, vertices } => write!(
                 f,
                 "triangle {triangle} names vertex {index}, but there are {vertices} vertices (0 to {})",

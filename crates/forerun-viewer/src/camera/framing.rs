@@ -39,7 +39,7 @@ impl Framed {
         // From a low angle where things are high, from above where they lie about in the plane.
         let depth = size.x.min(size.z);
         let flatness = (depth - size.y).max(0.0) / across;
-        let pitch = 0.24 + 0.62 * flatness.min(1.0);
+        let pitch = 0.34 + 0.52 * flatness.min(1.0);
         let yaw = if size.x >= size.z { 0.42 } else { std::f32::consts::FRAC_PI_2 - 0.42 };
         Some(Framed { target: 0.5 * (low + high), distance: 1.0, yaw, pitch }.fitting(&kept, aspect))
     }

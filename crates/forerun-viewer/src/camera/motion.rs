@@ -83,9 +83,9 @@ impl Motion {
         self.flying && self.held.contains(&true)
     }
 
-    /// Whether the camera is on its way somewhere.
-    pub(crate) fn is_moving(&self) -> bool {
-        self.is_pushed() || self.journey.is_some()
+    /// Whether the next picture is taken from elsewhere.
+    pub(super) fn is_under_way(&self) -> bool {
+        self.journey.is_some() || self.is_pushed()
     }
 
     /// Lets go of everything.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use forerun::{Body, BodyId, Pose, Shape};
 use three_d::Context;
 
-use super::Scenery;
 use super::colours::Paint;
 use super::crowd::{Crowd, Drawn, Mark, Seat};
 use super::shadow::SunBox;
 use super::surface::Surfaces;
+use super::{Scenery, glass};
 
 /// A body and where it sits in the crowd, as long as it is what it is.
 struct Known {
@@ -22,6 +22,8 @@ struct Known {
 #[derive(Default)]
 pub(super) struct Bodies {
     pub(super) crowd: Crowd,
+    /// Those that are seen through, because they hide what moves.
+    pub(super) glass: Crowd,
     /// Those that are selected, once more: for their outline.
     pub(super) chosen: Crowd,
     pub(super) surfaces: Surfaces,
@@ -35,6 +37,7 @@ pub(super) struct Bodies {
     pub(super) moved: bool,
     known: Vec<Known>,
     selected: Vec<BodyId>,
+    hiding: Vec<BodyId>,
 }
 
 impl Default for SunBox {
@@ -55,6 +58,8 @@ impl Bodies {
         let paint = Paint::of(play, view.colour_by, scenery.inside);
         self.crowd.begin();
         self.chosen.begin();
+        self.glass.begin();
+        glass::hiding(play, camera.eye(), &mut self.hiding);
         self.planes.clear();
         (self.casters, self.reach) = (SunBox::EMPTY, 0.0);
         self.selected.clear();
@@ -77,23 +82,22 @@ impl Bodies {
                 _ => Mark::None,
             };
             let drawn = Drawn { shape: &body.shape, pose, ink: [red, green, blue, 255], mark };
-            self.crowd.add(seat, &drawn);
+            if self.hiding.binary_search(id).is_ok() {
+                add(&mut self.glass, context, &mut self.surfaces, &drawn);
+            } else {
+                self.crowd.add(seat, &drawn);
+            }
             let radius = reach_of(body);
             self.casters.add(pose.position, radius);
             self.reach = self.reach.max((pose.position - camera.target).length() + radius);
             if self.selected.binary_search(id).is_ok() {
-                self.choose(context, &drawn);
+                add(&mut self.chosen, context, &mut self.surfaces, &drawn);
             }
         }
         self.known.truncate(number);
         self.moved = self.crowd.send();
         self.chosen.send();
-    }
-
-    fn choose(&mut self, context: &Context, drawn: &Drawn<'_>) {
-        if let Some(seat) = self.chosen.seat(context, &mut self.surfaces, drawn.shape) {
-            self.chosen.add(seat, drawn);
-        }
+        self.glass.send();
     }
 
     /// The seat of the body that is drawn after so many others: mostly that of the picture before.
@@ -111,6 +115,13 @@ impl Bodies {
             None => self.known.push(now),
         }
         seat
+    }
+}
+
+/// Adds a body to a crowd of few.
+fn add(crowd: &mut Crowd, context: &Context, surfaces: &mut Surfaces, drawn: &Drawn<'_>) {
+    if let Some(seat) = crowd.seat(context, surfaces, drawn.shape) {
+        crowd.add(seat, drawn);
     }
 }
 

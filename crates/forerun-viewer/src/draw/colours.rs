@@ -32,7 +32,7 @@ const AWAKE: Rgb = [226, 112, 66];
 const IDLE_AREA: Rgb = [96, 120, 158];
 const ACTIVE_AREA: Rgb = [226, 112, 66];
 /// From the least to the most: dark blue, teal, green, yellow (after matplotlib's viridis), and red for too much.
-const RAMP: [Rgb; 5] = [[72, 60, 130], [48, 104, 142], [34, 154, 136], [120, 206, 88], [250, 226, 60]];
+const RAMP: [Rgb; 5] = [[86, 78, 152], [48, 104, 142], [34, 154, 136], [120, 206, 88], [250, 226, 60]];
 /// One slice, two, four, eight and more.
 const SLICES: [Rgb; 4] = [[150, 160, 172], [232, 202, 84], [232, 136, 56], [214, 62, 48]];
 /// Speeds of the legend. m/s.
@@ -103,6 +103,13 @@ impl<'a> Paint<'a> {
 
     /// The colour of a body.
     pub(super) fn colour(&self, id: BodyId, body: &Body, sample: &Sample) -> Rgb {
+        match self.by {
+            ColourBy::Body => self.plain_colour(id, body, sample),
+            _ => distinct(self.plain_colour(id, body, sample), id),
+        }
+    }
+
+    fn plain_colour(&self, id: BodyId, body: &Body, sample: &Sample) -> Rgb {
         match body.kind {
             BodyKind::Dynamic => {}
             BodyKind::Fixed => return FIXED,
@@ -156,6 +163,12 @@ impl<'a> Paint<'a> {
         let odd = name.iter().sum::<i32>().rem_euclid(2) == 1;
         if odd { base.map(|c| (f32::from(c) * 0.8) as u8) } else { base }
     }
+}
+
+/// A little darker or lighter than bodies of the same colour beside it, so that one sees where it ends.
+fn distinct(rgb: Rgb, id: BodyId) -> Rgb {
+    let factor = [1.0, 0.91, 1.06, 0.96, 0.87][id.0 as usize % 5];
+    rgb.map(|c| (f32::from(c) * factor).min(255.0) as u8)
 }
 
 /// The colour of the body or island with a number.

@@ -132,9 +132,11 @@ impl Crowd {
     ) {
         for batch in self.batches.iter().filter(|batch| !batch.sent.places.is_empty()) {
             let Some(surface) = surfaces.get(batch.look) else { continue };
-            program.use_vertex_attribute("position", &surface.positions);
+            let count = batch.sent.places.len();
+            let triangles = surface.triangles(count);
+            program.use_vertex_attribute("position", &triangles.positions);
             if program.requires_attribute("normal") {
-                program.use_vertex_attribute("normal", &surface.normals);
+                program.use_vertex_attribute("normal", &triangles.normals);
             }
             program.use_instance_attribute("place", &batch.places);
             program.use_instance_attribute("turn", &batch.turns);
@@ -142,8 +144,7 @@ impl Crowd {
             if program.requires_attribute("ink") {
                 program.use_instance_attribute("ink", &batch.inks);
             }
-            let count = batch.sent.places.len() as u32;
-            program.draw_arrays_instanced(states, viewport, surface.vertices, count);
+            program.draw_elements_instanced(states, viewport, &triangles.corners, count as u32);
         }
     }
 }

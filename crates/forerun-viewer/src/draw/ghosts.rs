@@ -1,7 +1,7 @@
 //! Ghosts: what is still to come, as far as it is computed: transparent bodies (dissertation, figure 5.7), trails, and what a throw would do.
 
 use forerun::{BodyId, BodyKind, Frame, Pose, Sample, Vec3};
-use three_d::{Context, Cull, RenderStates, WriteMask};
+use three_d::{Context, Cull, RenderStates};
 
 use super::colours::Paint;
 use super::crowd::{Crowd, Drawn, Mark};
@@ -21,6 +21,10 @@ const TURNS: f32 = 0.02;
 const TRAILS_MAX: usize = 64;
 /// So many ghosts of one body are drawn.
 const GHOSTS_MAX: u32 = 20;
+
+/// How opaque things at hand and glass are.
+const HELD: f32 = 0.5;
+const GLASS: f32 = 0.16;
 
 const AIM: Ink = [255, 190, 60, 255];
 const GRAB: Ink = [255, 225, 120, 255];
@@ -42,6 +46,8 @@ pub(super) struct Ghosts {
     /// What the hands show.
     held: Crowd,
     samples: Vec<(BodyId, Sample)>,
+    /// Those of the layer before, which is farther in time.
+    farther: Vec<(BodyId, Sample)>,
 }
 
 impl Ghosts {
@@ -54,6 +60,7 @@ impl Ghosts {
     pub(super) fn place(&mut self, context: &Context, surfaces: &mut Surfaces, scenery: &Scenery<'_>) {
         let Scenery { play, view, extras, .. } = *scenery;
         self.used = 0;
+        self.samples.clear();
         if view.ghosts.shown {
             let paint = Paint::of(play, view.colour_by, scenery.inside);
             for (time_s, opacity) in times_of(play, view) {
@@ -87,14 +94,17 @@ impl Ghosts {
         self.used += 1;
         layer.opacity = opacity;
         layer.crowd.begin();
+        std::mem::swap(&mut self.samples, &mut self.farther);
         play.picture.snapshot.sample_all(time_s, &mut self.samples);
-        // Both lists are sorted by body.
-        let mut now = play.samples.iter().peekable();
+        let mut now = Walk { rest: &play.samples };
+        let mut farther = Walk { rest: &self.farther };
         for (id, sample) in &self.samples {
             let Some(body) = play.body(*id).filter(|body| body.kind != BodyKind::Fixed) else { continue };
-            while now.next_if(|(earlier, _)| earlier < id).is_some() {}
-            let here = now.peek().filter(|(same, _)| same == id);
-            if here.is_some_and(|(_, here)| stays(&here.pose, &sample.pose, body.radius)) {
+            let same = |other: Option<&Sample>| {
+                other.is_some_and(|other| stays(&other.pose, &sample.pose, body.radius))
+            };
+            // Who is there already, now or in a ghost, is drawn there once.
+            if same(now.find(*id)) || same(farther.find(*id)) {
                 continue;
             }
             if let Some(seat) = layer.crowd.seat(context, surfaces, &body.shape) {
@@ -107,22 +117,36 @@ impl Ghosts {
         layer.crowd.send();
     }
 
-    /// Draws them over what is there now.
-    pub(super) fn draw(&self, programs: &Programs, eye: &Eye, surfaces: &Surfaces) {
+    /// Draws them over what is there now, and what is of glass.
+    pub(super) fn draw(&self, programs: &Programs, eye: &Eye, (glass, surfaces): (&Crowd, &Surfaces)) {
         let program = &programs.ghost;
         program.use_uniform("viewProjection", eye.view_projection);
         program.use_uniform("eye", super::convert::vector(eye.position));
         let layers = self.layers[..self.used].iter().map(|layer| (&layer.crowd, layer.opacity));
-        for (crowd, opacity) in layers.chain([(&self.held, 0.5)]) {
+        for (crowd, opacity) in layers.chain([(&self.held, HELD), (glass, GLASS)]) {
             if crowd.is_empty() {
                 continue;
             }
-            // First how deep they are, then their colours there: of each ghost only what is nearest is seen.
-            let deep = RenderStates { write_mask: WriteMask::DEPTH, cull: Cull::Back, ..CLEAR };
             program.use_uniform("opacity", opacity);
-            crowd.draw(program, deep, eye.viewport, surfaces);
             crowd.draw(program, RenderStates { cull: Cull::Back, ..CLEAR }, eye.viewport, surfaces);
         }
+    }
+}
+
+/// Goes through samples, which are sorted by body, with ever larger bodies.
+struct Walk<'a> {
+    rest: &'a [(BodyId, Sample)],
+}
+
+impl<'a> Walk<'a> {
+    fn find(&mut self, id: BodyId) -> Option<&'a Sample> {
+        while let [(first, sample), rest @ ..] = self.rest {
+            if *first >= id {
+                return (*first == id).then_some(sample);
+            }
+            self.rest = rest;
+        }
+        None
     }
 }
 

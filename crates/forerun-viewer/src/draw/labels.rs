@@ -44,3 +44,14 @@ pub fn write_labels(context: &egui::Context, scenery: &Scenery<'_>) {
         painter.galley(around.min, text, Color32::WHITE);
     }
 }
+
+/// Says why there is nothing to be seen.
+pub fn write_failure(context: &egui::Context, why: &str) {
+    let first = why.lines().find(|line| !line.trim().is_empty()).unwrap_or(why);
+    let text =
+        format!("The graphics driver cannot draw bodies: {first}\nA newer driver may; physics goes on.");
+    let painter =
+        context.layer_painter(egui::LayerId::new(egui::Order::Background, egui::Id::new("failure")));
+    let font = FontId::proportional(SIZE);
+    painter.text(context.content_rect().center(), Align2::CENTER_CENTER, text, font, Color32::LIGHT_RED);
+}

@@ -8,8 +8,8 @@ use super::eye::Eye;
 use super::shadow::Shadows;
 use crate::view::Theme;
 
-/// Direction from the bodies to the sun: that of `forerun render`.
-pub(super) const TO_SUN: Vec3 = Vec3::new(0.44, 0.79, 0.42);
+/// Direction from the bodies to the sun: such that the three sides of a box that one sees are not equally light.
+pub(super) const TO_SUN: Vec3 = Vec3::new(0.28, 0.77, 0.57);
 
 /// Colours of light and of what is always there, as parts of full light.
 #[derive(Clone, Copy, Debug)]

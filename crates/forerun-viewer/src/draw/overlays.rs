@@ -4,7 +4,7 @@ mod field;
 
 pub(super) use field::FieldSlice;
 
-use forerun::{Aabb, Frame, FrameInspection, InspectedContact, Touch, Vec3};
+use forerun::{Aabb, Frame, FrameInspection, InspectedArea, InspectedContact, Touch, Vec3};
 
 use super::Scenery;
 use super::labels::Label;
@@ -12,6 +12,8 @@ use super::lines::{Ink, Lines};
 
 /// So many labels can be read at once.
 const LABELS_MAX: usize = 300;
+/// So many active areas tell their clocks.
+const ACTIVE_TOLD: usize = 12;
 /// So many contacts, bounds or areas are drawn.
 const DRAWN_MAX: usize = 6000;
 
@@ -44,7 +46,7 @@ pub(super) fn draw(lines: &mut Lines, scenery: &Scenery<'_>) {
     if overlays.areas
         && let Some(inside) = scenery.inside
     {
-        draw_areas(lines, inside, snapshot.horizon());
+        draw_areas(lines, inside);
     }
 }
 
@@ -124,12 +126,18 @@ fn draw_bounds(lines: &mut Lines, scenery: &Scenery<'_>) {
     }
 }
 
-fn draw_areas(lines: &mut Lines, inside: &FrameInspection, horizon: Frame) {
+/// The clock of areas in which nothing waits to be computed.
+fn latest_clock(inside: &FrameInspection) -> Frame {
+    inside.areas.iter().map(|area| area.clock).max().unwrap_or(inside.frame)
+}
+
+fn draw_areas(lines: &mut Lines, inside: &FrameInspection) {
+    let latest = latest_clock(inside);
     // Those that matter last: they are drawn over the others.
     let mut areas: Vec<_> = inside.areas.iter().take(DRAWN_MAX).collect();
-    areas.sort_by_key(|area| (area.clock < horizon, area.active));
+    areas.sort_by_key(|area| (area.clock < latest, area.active));
     for area in areas {
-        let (ink, width) = match (area.clock < horizon, area.active) {
+        let (ink, width) = match (area.clock < latest, area.active) {
             (true, _) => (LATE, 2.0),
             (_, true) => (ACTIVE, 2.0),
             _ => (IDLE, 1.2),
@@ -156,9 +164,12 @@ pub(super) fn labels(scenery: &Scenery<'_>) -> Vec<Label> {
         }
     }
     if overlays.areas {
-        let horizon = scenery.play.picture.snapshot.horizon();
-        for area in inside.areas.iter().filter(|area| area.active || area.clock < horizon) {
-            let ink = if area.clock < horizon { LATE } else { ACTIVE };
+        let latest = latest_clock(inside);
+        let active = inside.areas.iter().filter(|area| area.active).count();
+        // The clocks of those in which nothing waits are all the same.
+        let told = |area: &&InspectedArea| area.clock < latest || area.active && active <= ACTIVE_TOLD;
+        for area in inside.areas.iter().filter(told) {
+            let ink = if area.clock < latest { LATE } else { ACTIVE };
             let [red, green, blue, _] = ink;
             let at = area.bounds.centre();
             labels.push(Label { at, text: format!("t = {}", area.clock.0), rgb: [red, green, blue] });

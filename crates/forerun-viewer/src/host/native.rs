@@ -73,8 +73,8 @@ impl Host {
     ///
     /// # Errors
     /// When the system refuses threads.
-    pub fn restart(&self, timeline: Timeline) -> Result<Decoupled, String> {
-        decoupled(timeline, &self.slow_down)
+    pub fn restart(&self, timeline: Timeline) -> Result<(Decoupled, Link), String> {
+        Ok((decoupled(timeline, &self.slow_down)?, Link))
     }
 
     /// How far timelines look ahead and back.

@@ -1,20 +1,38 @@
 //! The web page: physics in a worker, scenes by name or by their content.
 
-use forerun::{Courier, Decoupled, Scene};
+use std::cell::Cell;
+use std::rc::Rc;
+
+use forerun::recording::Recording;
+use forerun::{
+    Clock, Courier, Decoupled, Keep, RemotePhysics, RemoteSettings, Scene, Threads, Timeline,
+    TimelineSettings,
+};
 use wasm_bindgen::prelude::*;
 
 use super::{SceneSource, Started};
+
+/// States of the past that may be gone back to. Frames: a minute of them, as pages have less memory.
+const PAST_FRAMES: u32 = 3600;
+
+/// Orders that may wait while physics is in a step: to take back a long drag is some thousands.
+const ORDERS_MAX: usize = 16_384;
 
 #[wasm_bindgen(module = "/src/host/worker_link.js")]
 extern "C" {
     #[derive(Debug)]
     type WorkerLink;
 
+    /// A worker that opens a scene by its name or its text; or that goes on from a recording.
     #[wasm_bindgen(constructor)]
-    fn new(name: &str, text: Option<String>, slow_ms: Option<Vec<f64>>) -> WorkerLink;
+    fn new(name: &str, text: Option<String>, recording: Option<Vec<u8>>) -> WorkerLink;
 
     #[wasm_bindgen(method)]
     fn post(this: &WorkerLink, letter: Vec<u8>);
+
+    /// Makes every frame slower, from the first number of milliseconds to the second.
+    #[wasm_bindgen(method)]
+    fn hinder(this: &WorkerLink, from_ms: f64, to_ms: f64);
 
     #[wasm_bindgen(method)]
     fn take(this: &WorkerLink) -> Option<Vec<u8>>;
@@ -26,21 +44,51 @@ extern "C" {
     fn end(this: &WorkerLink);
 }
 
+#[wasm_bindgen]
+extern "C" {
+    /// Milliseconds since some moment.
+    #[wasm_bindgen(js_namespace = performance, js_name = now)]
+    fn now_ms() -> f64;
+}
+
+/// How much slower every frame of the physics is made: from, to. Milliseconds.
+type SlowMs = Rc<Cell<[f64; 2]>>;
+
 /// A worker of the page; it ends with this.
 #[derive(Debug)]
-struct Worker(WorkerLink);
+struct Worker {
+    link: WorkerLink,
+    slow_ms: SlowMs,
+    /// What it was told of that.
+    told_ms: [f64; 2],
+}
+
+impl Worker {
+    fn new(link: WorkerLink, slow_ms: &SlowMs) -> Worker {
+        let mut worker = Worker { link, slow_ms: Rc::clone(slow_ms), told_ms: [0.0; 2] };
+        worker.hinder();
+        worker
+    }
+
+    fn hinder(&mut self) {
+        let slow_ms = self.slow_ms.get();
+        if slow_ms != self.told_ms {
+            self.link.hinder(slow_ms[0], slow_ms[1]);
+            self.told_ms = slow_ms;
+        }
+    }
+}
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.0.end();
+        self.link.end();
     }
 }
 
 /// The page that the viewer runs in.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Host {
-    /// How much slower every frame of the physics is made, from and to: to see that the page does not mind. Milliseconds.
-    pub slow_ms: Option<[f64; 2]>,
+    slow_ms: SlowMs,
 }
 
 /// A scene that a worker reads, and whose physics it starts.
@@ -56,7 +104,29 @@ pub struct Link {
     courier: Courier,
 }
 
+/// How the physics of a page works, here and in the worker.
+#[must_use]
+pub fn remote_settings() -> RemoteSettings {
+    RemoteSettings { command_capacity: ORDERS_MAX, count_areas: true, stage_clock: Some(clock()) }
+}
+
+/// How far timelines look ahead and back.
+#[must_use]
+pub fn timeline_settings() -> TimelineSettings {
+    TimelineSettings { past: PAST_FRAMES, ..TimelineSettings::default() }
+}
+
+fn clock() -> Clock {
+    Clock::host(|| now_ms() / 1000.0)
+}
+
 impl Host {
+    /// The page; every frame of the physics is made slower, from the first number of milliseconds to the second: to see that the page does not mind.
+    #[must_use]
+    pub fn new(slow_ms: [f64; 2]) -> Host {
+        Host { slow_ms: Rc::new(Cell::new(slow_ms)) }
+    }
+
     /// Begins to start a scene.
     #[must_use]
     pub fn start(&self, source: &SceneSource) -> Starting {
@@ -74,8 +144,52 @@ impl Host {
             }
         };
         let scene = scene.map_err(|error| error.to_string())?;
-        let slow_ms = self.slow_ms.map(|slow| slow.to_vec());
-        Ok((scene, Worker(WorkerLink::new(name, text, slow_ms))))
+        Ok((scene, Worker::new(WorkerLink::new(name, text, None), &self.slow_ms)))
+    }
+
+    /// Physics goes on from a timeline, in a worker of its own.
+    ///
+    /// # Errors
+    /// When the timeline cannot be sent.
+    pub fn restart(&self, timeline: Timeline) -> Result<(Decoupled, Link), String> {
+        let recording = Recording::of(&timeline, Keep::States).encode().map_err(|error| error.to_string())?;
+        // The worker begins as this does, to the bit: so there is nothing to wait for.
+        let twin =
+            RemotePhysics::new(timeline, remote_settings()).map_err(|error| error.to_string())?.publish();
+        let first = twin.ok_or("there is always a first report")?;
+        let (driver, courier) = Decoupled::remote(&first).map_err(|error| error.to_string())?;
+        let worker = Worker::new(WorkerLink::new("", None, Some(recording)), &self.slow_ms);
+        Ok((driver, Link { worker, courier }))
+    }
+
+    /// How far timelines look ahead and back.
+    #[must_use]
+    pub fn timeline_settings(&self) -> TimelineSettings {
+        timeline_settings()
+    }
+
+    /// Makes every step that is computed from now on this much slower. Seconds.
+    pub fn slow_down(&self, seconds: f32) {
+        self.slow_ms.set([f64::from(seconds.max(0.0)) * 1000.0; 2]);
+    }
+
+    /// Ends a driver: its worker ends with its link.
+    pub fn end(&self, driver: Decoupled) {
+        drop(driver);
+    }
+
+    /// The clock of a driver that steps here.
+    #[must_use]
+    pub fn clock(&self) -> Clock {
+        clock()
+    }
+
+    /// Threads of a driver that steps here.
+    ///
+    /// # Errors
+    /// None here.
+    pub fn threads(&self) -> Result<Threads, String> {
+        Threads::all().map_err(|error| error.to_string())
     }
 }
 
@@ -87,10 +201,10 @@ impl Starting {
             Err(message) => return Some(Err(message.clone())),
         };
         let (_, worker) = begun.as_ref()?;
-        if let Some(message) = worker.0.failure() {
+        if let Some(message) = worker.link.failure() {
             return Some(Err(message));
         }
-        let first = worker.0.take()?;
+        let first = worker.link.take()?;
         let (scene, worker) = begun.take()?;
         let started = Decoupled::remote(&first).map(|(driver, courier)| {
             let link = Link { worker, courier };
@@ -106,14 +220,15 @@ impl Link {
     /// # Errors
     /// When a message is damaged or lost.
     pub fn carry(&mut self) -> Result<(), String> {
-        if let Some(message) = self.worker.0.failure() {
+        self.worker.hinder();
+        if let Some(message) = self.worker.link.failure() {
             self.courier.fail(message);
         }
-        while let Some(report) = self.worker.0.take() {
+        while let Some(report) = self.worker.link.take() {
             self.courier.receive(&report).map_err(|error| error.to_string())?;
         }
         for letter in self.courier.outgoing() {
-            self.worker.0.post(letter);
+            self.worker.link.post(letter);
         }
         Ok(())
     }

@@ -1,10 +1,11 @@
 // The page's end of the way to its physics worker.
 
 export class WorkerLink {
-  constructor(name, text, slow) {
+  constructor(name, text, recording) {
     this.reports = [];
     this.failed = undefined;
-    this.first = { open: { name, text, slow } };
+    this.first = { open: { name, text, recording } };
+    this.slow = undefined;
     this.begin({ type: "module" });
   }
 
@@ -28,10 +29,18 @@ export class WorkerLink {
       }
     };
     this.worker.postMessage(this.first);
+    if (this.slow) {
+      this.worker.postMessage(this.slow);
+    }
   }
 
   post(letter) {
     this.worker.postMessage({ letter: letter.buffer }, [letter.buffer]);
+  }
+
+  hinder(from_ms, to_ms) {
+    this.slow = { slow: [from_ms, to_ms] };
+    this.worker.postMessage(this.slow);
   }
 
   take() {

@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, play: &mut Play, palette: &Palette, wishes: &mut
     ui.horizontal(|ui| {
         buttons(ui, play, wishes);
         ui.add_space(6.0);
-        speeds(ui, play);
+        ui.add_enabled_ui(!play.is_coupled(), |ui| speeds(ui, play));
         ui.add_space(6.0);
         let shown = format!("{:>8.3} s", play.picture.time_s);
         ui.label(RichText::new(shown).monospace().strong().size(15.0)).on_hover_text("Display time");
@@ -38,8 +38,12 @@ pub(super) fn show(ui: &mut Ui, play: &mut Play, palette: &Palette, wishes: &mut
 
 fn buttons(ui: &mut Ui, play: &Play, wishes: &mut Vec<Wish>) {
     ui.spacing_mut().item_spacing.x = 2.0;
+    // The traditional driver has neither a past nor a future to go to.
+    let ahead = !play.is_coupled();
     let mut put = |ui: &mut Ui, icon, action, on, tip| {
-        if (IconButton { icon, action, on, tip }).show(ui) {
+        let enabled = ahead || action == Action::PlayPause;
+        let button = IconButton { icon, action, on, tip };
+        if ui.add_enabled_ui(enabled, |ui| button.show(ui)).inner {
             wishes.push(Wish::Do(action));
         }
     };
@@ -81,8 +85,9 @@ fn speeds(ui: &mut Ui, play: &mut Play) {
 fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
     let picture = &play.picture;
     if let Some(coupled) = play.coupled() {
-        let tip = "The traditional driver: each picture waits for its step.";
-        ui.label(format!("coupled, step {:.1} ms", coupled.step_s() * 1e3)).on_hover_text(tip);
+        let text = format!("coupled: steps of {:.1} ms", 1e3 * coupled.step_s());
+        ui.label(text)
+            .on_hover_text("Physics and display take turns: who shows a picture waits for its step.");
         return;
     }
     let snapshot = &picture.snapshot;

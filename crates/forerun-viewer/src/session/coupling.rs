@@ -41,7 +41,8 @@ impl Play {
             .map_err(|error| error.to_string())
             .and_then(|timeline| host.restart(timeline));
         match restarted {
-            Ok(driver) => {
+            Ok((driver, link)) => {
+                self.link = link;
                 let before = std::mem::replace(&mut self.driver, driver);
                 self.picture = self.driver.last_picture();
                 self.forget_the_future();

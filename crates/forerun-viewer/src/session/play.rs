@@ -25,7 +25,7 @@ pub struct Play {
     /// The traditional driver, in coupled mode.
     pub(super) coupled: Option<Coupled>,
     /// The way to the physics.
-    link: Link,
+    pub(super) link: Link,
     /// What was shown last.
     pub picture: Picture,
     /// The bodies as they are drawn, by id.

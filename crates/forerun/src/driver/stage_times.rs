@@ -187,7 +187,7 @@ mod tests {
         StageTimes {
             number: frame,
             frame: Frame(frame),
-            extended: frame % 2 == 0,
+            extended: frame.is_multiple_of(2),
             recomputed: frame as u32,
             affected: frame as u32 / 2,
             seconds: std::array::from_fn(|k| part(k as u32)),

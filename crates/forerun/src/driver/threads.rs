@@ -8,7 +8,8 @@ use std::num::NonZeroU16;
 /// A pool of threads that physics runs in.
 #[derive(Debug)]
 pub struct Threads {
-    pool: rayon::ThreadPool,
+    /// `None` where there are no threads: in WebAssembly all is done on the caller's.
+    pool: Option<rayon::ThreadPool>,
 }
 
 /// The system did not give us the threads.
@@ -48,17 +49,23 @@ impl Threads {
     }
 
     fn build(count: usize) -> Result<Self, ThreadsError> {
+        if cfg!(target_family = "wasm") {
+            return Ok(Threads { pool: None });
+        }
         rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .thread_name(|i| format!("forerun-step-{i}"))
             .build()
-            .map(|pool| Threads { pool })
+            .map(|pool| Threads { pool: Some(pool) })
             .map_err(|cause| ThreadsError { cause })
     }
 
     /// Does `work` on a thread of the pool; parallel loops in it use the others too.
     pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        self.pool.install(work)
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
     }
 }
 

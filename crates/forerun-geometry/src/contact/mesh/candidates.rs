@@ -3,6 +3,7 @@
 use forerun_lanes::{LaneMask, Lanes, Portable, V8};
 
 use super::directions::Way;
+use super::ridges::Search;
 use crate::Vec3;
 use crate::sdf::eight::lane;
 
@@ -14,6 +15,8 @@ pub(super) struct Candidates {
     pub(super) leaves: Vec<u32>,
     /// The blocks of eight leaves that are looked into.
     pub(super) nodes: Vec<u32>,
+    /// Of long edges.
+    pub(super) search: Search,
 }
 
 /// Eight points, not all of which are candidates.

@@ -47,8 +47,8 @@ impl<F: Lanes> Answers<F> {
     #[inline(always)]
     fn put(&mut self, crossings: &Crossings) {
         let known = F::Mask::from_bits(crossings.known);
-        self.distance = known.select(F::from_array(crossings.distance), self.distance);
-        self.normal = known.select_v(of_vectors(&crossings.normal).form(), self.normal);
+        self.distance = known.select(F::from_array(crossings.distance.to_array()), self.distance);
+        self.normal = known.select_v(crossings.normal.form(), self.normal);
         self.doubtful &= !crossings.known;
     }
 }
@@ -95,7 +95,7 @@ fn find_sharp_lanes<F: Lanes, S: LookUp>(
     samples: &Samples,
     candidates: &mut Candidates,
 ) {
-    let Candidates { blocks, leaves, nodes } = candidates;
+    let Candidates { blocks, leaves, nodes, .. } = candidates;
     cull::<F, S>(direction, surface, samples, (nodes, leaves));
     for &leaf in &*leaves {
         let (leaf, meant) = samples.leaf(leaf as usize);

@@ -8,73 +8,149 @@
 //! Limit: of several places where one stretch touches the other shape one is found. Stretches are no longer than their
 //! shape is thick, and the other shape has points and stretches of its own there.
 
-use forerun_lanes::{LANES, Lanes, Portable, V8, dispatched};
+use forerun_lanes::{LANES, LaneMask, Lanes, Portable, Row, V8, dispatched};
 
 use super::candidates::{Block, Candidates};
+use super::course::{Course, Place, Stretches};
 use super::directions::Direction;
 use super::look_up::{Eight, Query};
 use super::sharp::Answer;
 use crate::Vec3;
-use crate::sdf::eight::{lane, of_vectors, transformed};
+use crate::sdf::eight::transformed;
 use crate::sdf::primitive::{LookUp, Surface};
-use crate::sdf::ridges::EightRidges;
-use crate::sdf::samples::Spheres;
 
 /// How often slopes are followed.
 const STEPS: u32 = 3;
-/// Slopes below this are level: the edge lies on the surface there.
-const LEVEL: f32 = 1e-3;
 /// Places are lower than others by this much at least. Metres.
 const LOWER: f32 = 1e-4;
 /// Sides are too far apart for an edge to be between them where the mean of their normals is shorter than this.
 const CROSSING_MIN: f32 = 0.5;
 /// Places this near to the surface are on it. Metres.
 const ON_SURFACE: f32 = 1e-5;
-/// Part of a stretch next to its ends, which are points already.
-const END_PART: f32 = 1e-3;
-/// How far behind the rim of a side the points are where an edge has come to lie on it, at least. Metres.
-const INSIDE: f32 = 1e-3;
-/// How much farther, for each metre that they are deep or high, so that the side is nearer to them than the one next to it.
-const INSIDE_PER_DEPTH: f32 = 1.5;
+
+/// The memory of a search.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Search {
+    /// Stretches that are near, by number.
+    near: Vec<u32>,
+    /// Those of them that touch the surface between their ends.
+    touching: Vec<u32>,
+    /// Both ends of each of those, see [`Place::of`].
+    ends: Vec<Row>,
+}
 
 /// Whether there are edges to follow. Half-spaces meet edges at their ends, and spheres see them from their middle.
 pub(super) fn has_any(direction: &Direction) -> bool {
-    !direction.ridges.blocks.is_empty()
-        && !matches!(direction.surface, Surface::HalfSpace | Surface::Sphere(_))
+    !direction.ridges.is_empty() && !matches!(direction.surface, Surface::HalfSpace | Surface::Sphere(_))
 }
 
 /// Appends the points of long edges that are near the surface, or will be at the end of the step.
 pub(super) fn find(direction: &Direction, candidates: &mut Candidates) {
     // What is farther and fast is seen by the points, which are no farther apart than the shape is thick, and is then cut into slices.
     let direction = &direction.close();
-    for (eight, spheres) in direction.ridges.spheres.iter().enumerate() {
-        let mut bits = 0;
-        near(direction, spheres, &mut bits);
-        while bits != 0 {
-            let ridges = &direction.ridges.blocks[eight * LANES + bits.trailing_zeros() as usize];
-            direction.follow(ridges, &mut candidates.blocks);
-            bits &= bits - 1;
+    let Candidates { blocks, search, .. } = candidates;
+    list_near(direction, &mut search.near);
+    list_touching(direction, search);
+    let eights = search.touching.chunks(LANES).zip(search.ends.chunks(2 * LANES));
+    for (which, ends) in eights {
+        follow(direction, which, ends, blocks);
+    }
+}
+
+dispatched! {
+    /// Fills a list with the stretches that may hold points that count.
+    fn list_near(direction: &Direction, near: &mut Vec<u32>) => list_near_lanes
+}
+
+#[inline(always)]
+fn list_near_lanes<F: Lanes>(direction: &Direction, near: &mut Vec<u32>) {
+    let (ridges, half) = (direction.ridges, F::splat(0.5));
+    near.clear();
+    for (eight, spheres) in ridges.spheres().iter().enumerate() {
+        let mut blocks = direction.near::<F, _>(&direction.surface, spheres);
+        while blocks != 0 {
+            let first = (eight * LANES + blocks.trailing_zeros() as usize) * LANES;
+            blocks &= blocks - 1;
+            let (which, meant) = ridges.run(first);
+            let stretches = Stretches::new(direction, &ridges.eight::<F>(&which));
+            let (middle, radius) = (stretches.at(half * stretches.length), half * stretches.length);
+            let reach = direction.reach(middle, radius) + F::splat(direction.blur_depth);
+            let mut bits = (direction.surface.lower_bound(middle) - radius).lt(reach).bits() & meant;
+            while bits != 0 {
+                near.push(which[bits.trailing_zeros() as usize]);
+                bits &= bits - 1;
+            }
         }
     }
 }
 
 dispatched! {
-    fn near(direction: &Direction, spheres: &Spheres, bits: &mut u32) => near_lanes
+    /// Of the stretches that are near lists those that touch between their ends.
+    fn list_touching(direction: &Direction, search: &mut Search) => list_touching_lanes
 }
 
 #[inline(always)]
-fn near_lanes<F: Lanes>(direction: &Direction, spheres: &Spheres, bits: &mut u32) {
-    *bits = direction.near::<F, _>(&direction.surface, spheres);
+fn list_touching_lanes<F: Lanes>(direction: &Direction, search: &mut Search) {
+    let Search { near, touching, ends } = search;
+    touching.clear();
+    ends.clear();
+    for eight in near.chunks(LANES) {
+        let (which, meant) = filled(eight);
+        let stretches = Stretches::new(direction, &direction.ridges.eight::<F>(&which));
+        let length = stretches.length;
+        let radius = F::splat(0.5) * length;
+        let reach = direction.reach(stretches.at(radius), radius) + F::splat(direction.blur_depth);
+        let a = direction.measure(&stretches, F::zero(), meant);
+        // The distance falls by a metre for each metre of the stretch at most.
+        let mut bits = meant & !a.falls(-1.0) & (a.distance - length).lt(reach).bits();
+        if bits == 0 {
+            continue;
+        }
+        let b = direction.measure(&stretches, length, bits);
+        bits &= !b.falls(1.0) & (a.falls(1.0) | b.falls(-1.0));
+        bits &= (F::splat(0.5) * (a.distance + b.distance - length)).lt(reach).bits();
+        let (mut rows_a, mut rows_b) = ([Row::default(); LANES], [Row::default(); LANES]);
+        a.write(&mut rows_a);
+        b.write(&mut rows_b);
+        while bits != 0 {
+            let i = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            touching.push(which[i]);
+            ends.extend([rows_a[i], rows_b[i]]);
+        }
+    }
 }
 
 dispatched! {
-    /// No point of the surface, but for its blur, is nearer than this to points of the field's frame. Metres.
-    fn bound(direction: &Direction, points: &V8<Portable>, out: &mut [f32; LANES]) => bound_lanes
+    /// Appends where some stretches, eight at most, touch, given their ends.
+    fn follow(direction: &Direction, which: &[u32], ends: &[Row], blocks: &mut Vec<Block>) => follow_lanes
 }
 
 #[inline(always)]
-fn bound_lanes<F: Lanes>(direction: &Direction, points: &V8<Portable>, out: &mut [f32; LANES]) {
-    *out = direction.surface.lower_bound::<F>(points.form()).to_array();
+fn follow_lanes<F: Lanes>(direction: &Direction, which: &[u32], ends: &[Row], blocks: &mut Vec<Block>) {
+    let (which, bits) = filled(which);
+    let ridges = direction.ridges.eight::<F>(&which);
+    let stretches = Stretches::new(direction, &ridges);
+    let mut course = Course::new(ends, bits);
+    direction.descend(&stretches, &mut course, bits);
+    let outwards = transformed(ridges.normals, &direction.axes, Vec3::ZERO).form();
+    let facing_max = Portable::from_array(ridges.facing_max.to_array());
+    for end in 0..2 {
+        let at = course.lies(end);
+        let meant = bits & stretches.are_between(at);
+        if meant != 0 {
+            let points = stretches.at(at).form();
+            let found = Points { points, outwards, facing_max, meant, beside: meant, crossings: None };
+            append(direction, &found, blocks);
+        }
+    }
+    let at = course.lowest.at;
+    let meant = bits & stretches.are_between(at);
+    if meant != 0 {
+        let points = stretches.at(at).form();
+        let crossings = Some(direction.crossings(&stretches, &course, meant));
+        append(direction, &Points { points, outwards, facing_max, meant, beside: 0, crossings }, blocks);
+    }
 }
 
 dispatched! {
@@ -85,11 +161,11 @@ dispatched! {
 #[inline(always)]
 fn ask_lanes<F: Lanes>(direction: &Direction, points: &V8<Portable>, asked: u32, told: &mut Told) {
     let Answer { distance, gradient, .. } = direction.answer::<F>(points.form(), asked);
-    *told = Told { distance: distance.to_array(), gradient: gradient.form() };
+    *told = Told { distance: Portable::from_array(distance.to_array()), gradient: gradient.form() };
 }
 
 dispatched! {
-    /// Appends points that are near; those of `crossing` stretches as their crossings say.
+    /// Appends points that are near; those of crossings as these say.
     fn append(direction: &Direction, points: &Points, blocks: &mut Vec<Block>) => append_lanes
 }
 
@@ -97,8 +173,8 @@ dispatched! {
 fn append_lanes<F: Lanes>(direction: &Direction, points: &Points, blocks: &mut Vec<Block>) {
     let eight = Eight::<F> {
         points: points.points.form(),
-        outwards: transformed(points.ridges.normals.form(), &direction.axes, Vec3::ZERO),
-        facing_max: F::from_array(points.ridges.facing_max.to_array()),
+        outwards: points.outwards.form(),
+        facing_max: F::from_array(points.facing_max.to_array()),
     };
     let query = Query {
         told: direction.surface.look_up_some(eight.points, points.meant),
@@ -112,14 +188,15 @@ fn append_lanes<F: Lanes>(direction: &Direction, points: &Points, blocks: &mut V
 /// What the surface says to eight points.
 struct Told {
     /// Metres.
-    distance: [f32; LANES],
+    distance: Portable,
     gradient: V8<Portable>,
 }
 
 /// Points to be looked up.
-struct Points<'a> {
-    ridges: &'a EightRidges,
+struct Points {
     points: V8<Portable>,
+    outwards: V8<Portable>,
+    facing_max: Portable,
     /// The bits of those that are asked for.
     meant: u32,
     /// The bits of those that have a rim next to them.
@@ -131,225 +208,72 @@ struct Points<'a> {
 pub(super) struct Crossings {
     /// The bits of the points that are crossings.
     pub(super) known: u32,
-    pub(super) distance: [f32; LANES],
-    pub(super) normal: [Vec3; LANES],
-}
-
-/// A place on a stretch.
-#[derive(Clone, Copy, Default)]
-struct Place {
-    /// From the beginning of the stretch. Metres.
-    at: f32,
-    /// To the surface. Metres.
-    distance: f32,
-    /// Of the distance, along the stretch.
-    slope: f32,
-    /// Of the distance; its direction is that of the way out.
-    gradient: Vec3,
-}
-
-impl Place {
-    /// Whether the distance falls from here into the stretch; `way` is 1 from its beginning and -1 from its end.
-    fn falls(&self, way: f32) -> bool {
-        self.slope * way < -LEVEL
-    }
-
-    /// Where the tangents of two places meet; halfway where they do not.
-    fn meets(&self, other: &Place) -> f32 {
-        let turn = other.slope - self.slope;
-        let rise = other.distance - self.distance - other.slope * (other.at - self.at);
-        let at = if turn > LEVEL { self.at - rise / turn } else { 0.5 * (self.at + other.at) };
-        at.max(self.at).min(other.at)
-    }
-}
-
-/// A stretch of an edge in the field's frame.
-#[derive(Clone, Copy, Default)]
-struct Stretch {
-    from: Vec3,
-    /// Unit.
-    along: Vec3,
-    /// Metres.
-    length: f32,
-    /// What is left of it on both sides of the lowest place.
-    ends: [Place; 2],
-    /// Where it is lowest, as far as is known.
-    lowest: Place,
-    /// Whether following slopes leads no further.
-    settled: bool,
-}
-
-impl Stretch {
-    fn new(from: Vec3, to: Vec3) -> Stretch {
-        let length = from.distance(to);
-        let end = Place { at: length, ..Place::default() };
-        let ends = [Place::default(), end];
-        Stretch { from, along: (to - from) / length, length, ends, ..Stretch::default() }
-    }
-
-    /// Whether it may touch between its ends, and nearer than `reach`, as far as its first end tells.
-    fn may_touch(&self, reach: f32) -> bool {
-        !self.ends[0].falls(-1.0) && self.ends[0].distance - self.length < reach
-    }
-
-    /// The same once both ends are known.
-    fn touches(&self, reach: f32) -> bool {
-        let [a, b] = &self.ends;
-        let between = !b.falls(1.0) && (a.falls(1.0) || b.falls(-1.0));
-        between && 0.5 * (a.distance + b.distance - self.length) < reach
-    }
-
-    /// Whether a place is not one of the ends.
-    fn is_between(&self, at: f32) -> bool {
-        at > END_PART * self.length && at < (1.0 - END_PART) * self.length
-    }
-
-    /// Where the edge comes to lie on what it touches, as far as one end tells.
-    fn comes_to_lie(&self, end: usize) -> f32 {
-        let (end, level) = (&self.ends[end], Place { slope: 0.0, ..self.lowest });
-        if end.at < level.at { end.meets(&level) } else { level.meets(end) }
-    }
-
-    /// A place a little behind that.
-    fn lies(&self, end: usize) -> f32 {
-        let at = self.comes_to_lie(end);
-        let run = self.lowest.at - at;
-        let slope = self.ends[end].slope.abs().max(LEVEL);
-        at + run.signum() * (self.inside() / slope).min(0.5 * run.abs())
-    }
-
-    /// How far one must go from the rim of a side to be sure to see it.
-    fn inside(&self) -> f32 {
-        INSIDE + INSIDE_PER_DEPTH * self.lowest.distance.abs()
-    }
-
-    /// Normal and distance where the edge crosses another, given what is on both sides of it: the mean of the normals
-    /// there that is at a right angle to the edge, and the distance along it.
-    fn crossing(&self) -> Option<(Vec3, f32)> {
-        let [a, b] = &self.ends;
-        if !a.falls(1.0) || !b.falls(-1.0) {
-            return None;
-        }
-        let sum = a.gradient * b.slope - b.gradient * a.slope;
-        let (length, slopes) = (sum.length(), b.slope - a.slope);
-        (length > CROSSING_MIN * slopes).then(|| (sum / length, self.lowest.distance * slopes / length))
-    }
+    pub(super) distance: Portable,
+    pub(super) normal: V8<Portable>,
 }
 
 impl Direction<'_> {
-    /// Appends where some of eight stretches touch.
-    fn follow(&self, ridges: &EightRidges, blocks: &mut Vec<Block>) {
-        let [from, to] = ridges.ends.map(|end| transformed::<Portable>(end, &self.axes, self.origin));
-        let mut stretches: [Stretch; LANES] =
-            std::array::from_fn(|i| Stretch::new(lane(&from, i), lane(&to, i)));
-        let radii = Portable::from_array(stretches.map(|s| 0.5 * s.length));
-        let reach = self.reach((from + to) * Portable::splat(0.5), radii).to_array();
-        let reach = reach.map(|r| r + self.blur_depth);
-        let (mut first, mut second) = ([0.0; LANES], [0.0; LANES]);
-        bound(self, &from, &mut first);
-        bound(self, &to, &mut second);
-        let mut bits = keep(ridges.meant, |i| 0.5 * (first[i] + second[i] - stretches[i].length) < reach[i]);
-        self.measure(&mut stretches, |s| s.ends[0].at, bits, |s, place| s.ends[0] = place);
-        bits = keep(bits, |i| stretches[i].may_touch(reach[i]));
-        self.measure(&mut stretches, |s| s.ends[1].at, bits, |s, place| s.ends[1] = place);
-        bits = keep(bits, |i| stretches[i].touches(reach[i]));
-        if bits == 0 {
-            return;
-        }
-        self.descend(&mut stretches, bits);
-        for end in [0, 1] {
-            let at = stretches.map(|s| s.lies(end));
-            let meant = keep(bits, |i| stretches[i].is_between(at[i]));
-            let points = points(&stretches, at);
-            append(self, &Points { ridges, points, meant, beside: meant, crossings: None }, blocks);
-        }
-        let meant = keep(bits, |i| stretches[i].is_between(stretches[i].lowest.at));
-        let points = points(&stretches, stretches.map(|s| s.lowest.at));
-        let crossings = Some(self.crossings(&mut stretches, meant));
-        append(self, &Points { ridges, points, meant, beside: 0, crossings }, blocks);
-    }
-
-    /// Looks at both sides of the lowest places of some of eight stretches.
-    fn crossings(&self, stretches: &mut [Stretch; LANES], bits: u32) -> Crossings {
-        for (end, way) in [(0, -1.0), (1, 1.0)] {
-            let beside = |s: &Stretch| s.lowest.at + way * s.inside();
-            self.measure(stretches, beside, bits, |s, place| s.ends[end] = place);
-        }
-        let mut crossings = Crossings { known: 0, distance: [0.0; LANES], normal: [Vec3::ZERO; LANES] };
-        for (i, s) in stretches.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1) {
-            if let Some((normal, distance)) = s.crossing() {
-                (crossings.normal[i], crossings.distance[i]) = (normal, distance);
-                crossings.known |= 1 << i;
-            }
-        }
-        crossings
-    }
-
     /// Finds the lowest places of some of eight stretches, and the rims of what they lie on.
-    fn descend(&self, stretches: &mut [Stretch; LANES], bits: u32) {
-        for s in stretches.iter_mut() {
-            s.lowest = if s.ends[0].falls(1.0) { s.ends[1] } else { s.ends[0] };
-        }
+    #[inline(always)]
+    fn descend<F: Lanes>(&self, stretches: &Stretches<F>, course: &mut Course<F>, bits: u32) {
         for _ in 0..STEPS {
-            let tangents = |s: &Stretch| s.ends[0].meets(&s.ends[1]);
-            let unsettled = keep(bits, |i| !stretches[i].settled);
-            self.measure(stretches, tangents, unsettled, |s, place| {
-                // Not for nothing: a level stretch is to be seen from its far end.
-                let on_the_way = s.lowest.falls(1.0) || s.lowest.falls(-1.0);
-                if on_the_way || place.distance < s.lowest.distance - LOWER {
-                    s.lowest = place;
-                }
-                if place.falls(1.0) {
-                    s.ends[0] = place;
-                } else if place.falls(-1.0) {
-                    s.ends[1] = place;
-                } else {
-                    s.settled = true;
-                }
-            });
+            let unsettled = bits & !course.settled;
+            if unsettled == 0 {
+                break;
+            }
+            let place = self.measure(stretches, course.ends[0].meets(&course.ends[1]), unsettled);
+            // Not for nothing: a level stretch is to be seen from its far end.
+            let on_the_way = course.lowest.falls(1.0) | course.lowest.falls(-1.0);
+            let lower = place.distance.lt(course.lowest.distance - F::splat(LOWER)).bits();
+            course.lowest.take(&place, unsettled & (on_the_way | lower));
+            let (down, up) = (place.falls(1.0), place.falls(-1.0));
+            course.ends[0].take(&place, unsettled & down);
+            course.ends[1].take(&place, unsettled & up);
+            course.settled |= !(down | up);
         }
-        for (end, way) in [(0, 1.0), (1, -1.0)] {
-            self.measure(
-                stretches,
-                |s| s.comes_to_lie(end),
-                bits,
-                |s, place| {
-                    if place.falls(way) {
-                        s.ends[end] = place;
-                    }
-                },
-            );
+        let place = self.measure(stretches, course.comes_to_lie(0), bits);
+        course.ends[0].take(&place, bits & place.falls(1.0));
+        let place = self.measure(stretches, course.comes_to_lie(1), bits);
+        course.ends[1].take(&place, bits & place.falls(-1.0));
+    }
+
+    /// Looks at both sides of the lowest places of some of eight stretches. Where these cross an edge, given what is on
+    /// both sides of it, the normal is the mean of the normals there that is at a right angle to the edge.
+    #[inline(always)]
+    fn crossings<F: Lanes>(&self, stretches: &Stretches<F>, course: &Course<F>, bits: u32) -> Crossings {
+        let (lowest, inside) = (&course.lowest, course.inside());
+        let a = self.measure(stretches, lowest.at - inside, bits);
+        let b = self.measure(stretches, lowest.at + inside, bits);
+        let sum = a.gradient * b.slope - b.gradient * a.slope;
+        let (length, slopes) = (sum.length(), b.slope - a.slope);
+        let known = bits & a.falls(1.0) & b.falls(-1.0) & (F::splat(CROSSING_MIN) * slopes).lt(length).bits();
+        let distance = lowest.distance * slopes / length;
+        Crossings {
+            known,
+            distance: Portable::from_array(distance.to_array()),
+            normal: (sum * (F::one() / length)).form(),
         }
     }
 
     /// Asks for the distance at a place of each of some of eight stretches.
-    fn measure(
-        &self,
-        stretches: &mut [Stretch; LANES],
-        place: impl Fn(&Stretch) -> f32,
-        bits: u32,
-        mut tell: impl FnMut(&mut Stretch, Place),
-    ) {
-        if bits == 0 {
-            return;
-        }
-        let at = std::array::from_fn(|i| place(&stretches[i]));
-        let mut told = Told { distance: [0.0; LANES], gradient: V8::zero() };
-        ask(self, &points(stretches, at), bits, &mut told);
-        for (i, s) in stretches.iter_mut().enumerate().filter(|(i, _)| bits >> i & 1 == 1) {
-            let (distance, gradient) = (told.distance[i], lane(&told.gradient, i));
-            // On an edge or corner of the surface itself there are many slopes.
-            let slope = if distance.abs() < ON_SURFACE { 0.0 } else { gradient.dot(s.along) };
-            tell(s, Place { at: at[i], distance, slope, gradient });
-        }
+    #[inline(always)]
+    fn measure<F: Lanes>(&self, stretches: &Stretches<F>, at: F, bits: u32) -> Place<F> {
+        let mut told = Told { distance: Portable::zero(), gradient: V8::zero() };
+        ask(self, &stretches.at(at).form(), bits, &mut told);
+        let (distance, gradient) = (F::from_array(told.distance.to_array()), told.gradient.form::<F>());
+        // On an edge or corner of the surface itself there are many slopes.
+        let on_surface = distance.abs().lt(F::splat(ON_SURFACE));
+        let slope = on_surface.select(F::zero(), gradient.dot(stretches.along));
+        Place { at, distance, slope, gradient }
     }
 }
 
-fn points(stretches: &[Stretch; LANES], at: [f32; LANES]) -> V8<Portable> {
-    of_vectors(&std::array::from_fn(|i| stretches[i].from + stretches[i].along * at[i]))
-}
-
-/// Those of some bits that are to be kept.
-fn keep(bits: u32, keeps: impl Fn(usize) -> bool) -> u32 {
-    (0..LANES).filter(|i| bits >> i & 1 == 1 && keeps(*i)).fold(0, |kept, i| kept | 1 << i)
+/// Eight of up to eight numbers, the last of which fills them up, and the bits of those that are meant.
+#[inline(always)]
+fn filled(numbers: &[u32]) -> ([u32; LANES], u32) {
+    let mut eight = [0; LANES];
+    for i in 0..LANES {
+        eight[i] = numbers[i.min(numbers.len() - 1)];
+    }
+    (eight, (1 << numbers.len()) - 1)
 }

@@ -8,9 +8,9 @@ use forerun_lanes::{LANES, LaneMask, Lanes, Portable, V8};
 use super::directions::Direction;
 use super::look_up::Eight;
 use crate::Vec3;
-use crate::sdf::blur::Blur;
+use crate::sdf::blur::{Asked, Blur, see};
 use crate::sdf::eight::{lane, of_vectors};
-use crate::sdf::nearest::Nearest;
+use crate::sdf::facets::Seen;
 use crate::sdf::primitive::{LookUp, Surface};
 
 /// Unit vectors whose largest part is less than this are along no axis: off the sides of a box.
@@ -86,11 +86,11 @@ impl Direction<'_> {
     fn sharp(&self, blur: &Blur, points: &V8<Portable>, asked: u32) -> Exact {
         let mut exact = Exact::NOTHING;
         let Some(skin) = &self.skin else { return exact };
-        self.in_the_blur(blur, points, asked, |i, point, nearest| {
-            let signed = skin.signed(point.as_dvec3(), nearest);
-            exact.tell(i, signed.distance as f32, signed.gradient);
-            exact.beside |= u32::from(!nearest.is_on_face()) << i;
-        });
+        let seen = self.see(blur, points, asked, &mut exact.known);
+        for (i, seen) in some(&seen, exact.known) {
+            (exact.distance[i], exact.gradient[i]) = seen.signed(skin, &blur.facets);
+            exact.beside |= u32::from(!seen.is_on_face()) << i;
+        }
         exact
     }
 
@@ -98,42 +98,31 @@ impl Direction<'_> {
     fn facing(&self, blur: &Blur, [points, outwards]: [&V8<Portable>; 2], asked: u32) -> Exact {
         let mut exact = Exact::NOTHING;
         let Some(skin) = &self.skin else { return exact };
-        self.in_the_blur(blur, points, asked, |i, point, nearest| {
-            let (distance, normal) = skin.facing(point.as_dvec3(), nearest, lane(outwards, i).as_dvec3());
-            exact.tell(i, distance, normal);
-        });
+        let seen = self.see(blur, points, asked, &mut exact.known);
+        for (i, seen) in some(&seen, exact.known) {
+            (exact.distance[i], exact.gradient[i]) = seen.facing(skin, &blur.facets, lane(outwards, i));
+        }
         exact
     }
 
-    /// Finds what is nearest to those of some points where the field is blurred.
-    fn in_the_blur(
-        &self,
-        blur: &Blur,
-        points: &V8<Portable>,
-        asked: u32,
-        mut tell: impl FnMut(usize, Vec3, &Nearest),
-    ) {
-        let (Surface::Field(field), Some(skin)) = (&self.surface, &self.skin) else { return };
-        let mut guess: Option<Nearest> = None;
-        for i in (0..LANES).filter(|i| asked >> i & 1 == 1) {
-            let point = lane(points, i);
-            if blur.is_at(field, point) {
-                let nearest = skin.nearest(point.as_dvec3(), guess.as_ref());
-                tell(i, point, &nearest);
-                guess = Some(nearest);
-            }
+    /// What is nearest to those of some points where the field is blurred.
+    fn see(&self, blur: &Blur, points: &V8<Portable>, bits: u32, known: &mut u32) -> [Seen; LANES] {
+        let mut seen = [Seen::NOTHING; LANES];
+        if let Surface::Field(field) = self.surface {
+            see(blur, &Asked { field, points, bits }, &mut seen, known);
         }
+        seen
     }
+}
+
+/// Those of eight things whose bits are set, with their places.
+fn some<T>(eight: &[T; LANES], bits: u32) -> impl Iterator<Item = (usize, &T)> {
+    eight.iter().enumerate().filter(move |(i, _)| bits >> i & 1 == 1)
 }
 
 impl Exact {
     const NOTHING: Exact =
         Exact { distance: [0.0; LANES], gradient: [Vec3::ZERO; LANES], known: 0, beside: 0 };
-
-    fn tell(&mut self, i: usize, distance: f32, gradient: Vec3) {
-        (self.distance[i], self.gradient[i]) = (distance, gradient);
-        self.known |= 1 << i;
-    }
 }
 
 impl<F: Lanes> Answer<F> {

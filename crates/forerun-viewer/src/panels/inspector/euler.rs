@@ -4,11 +4,11 @@
 use forerun::{Quat, Vec3};
 
 /// The sine of a pitch from which yaw and roll are the same turn, which is called yaw.
-const STRAIGHT: f32 = 0.999_999;
+const STRAIGHT: f64 = 0.999_999;
 
 /// Pitch (x), yaw (y) and roll (z) of a rotation. Degrees.
 pub(super) fn degrees_of(rotation: Quat) -> Vec3 {
-    let Quat { x, y, z, w } = rotation;
+    let [x, y, z, w] = rotation.to_array().map(f64::from);
     let sine = (2.0 * (w * x - y * z)).clamp(-1.0, 1.0);
     let (yaw, roll) = if sine.abs() > STRAIGHT {
         (2.0 * y.atan2(w), 0.0)
@@ -16,7 +16,8 @@ pub(super) fn degrees_of(rotation: Quat) -> Vec3 {
         let yaw = (2.0 * (x * z + w * y)).atan2(1.0 - 2.0 * (x * x + y * y));
         (yaw, (2.0 * (x * y + w * z)).atan2(1.0 - 2.0 * (x * x + z * z)))
     };
-    Vec3::new(sine.asin(), yaw, roll).map(f32::to_degrees)
+    let [pitch, yaw, roll] = [sine.asin(), yaw, roll].map(|angle| angle.to_degrees() as f32);
+    Vec3::new(pitch, yaw, roll)
 }
 
 /// The rotation with these angles (degrees).
