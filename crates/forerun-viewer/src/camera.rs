@@ -158,6 +158,11 @@ impl Camera {
         self.motion.travel(framed);
     }
 
+    /// Says how much of the picture is free of panels: width and height, in heights of the picture.
+    pub fn set_free(&mut self, free: [f32; 2]) {
+        self.motion.free = free;
+    }
+
     /// Whether it moves by itself.
     #[must_use]
     pub fn is_moving(&self) -> bool {

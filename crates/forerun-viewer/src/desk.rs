@@ -109,14 +109,14 @@ fn perform_in_time(play: &mut Play, action: Action) {
 
 /// Travels to bodies; with none to all, but for strays.
 fn focus(play: &Play, camera: &mut Camera, bodies: &[BodyId]) {
-    let (balls, aspect) = (balls_of(play, bodies), camera.motion.aspect);
-    let Some(around) = Framed::around(&balls, aspect) else { return };
+    let (balls, free) = (balls_of(play, bodies), camera.motion.free);
+    let Some(around) = Framed::around(&balls, free) else { return };
     if bodies.is_empty() {
         camera.travel(around);
     } else {
         // From the direction that it looks in already.
         let Framed { yaw, pitch, .. } = camera.framed();
-        camera.travel(Framed { yaw, pitch, ..around }.fitting(&balls, aspect));
+        camera.travel(Framed { yaw, pitch, ..around }.fitting(&balls, free));
     }
 }
 

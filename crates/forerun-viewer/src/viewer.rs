@@ -82,6 +82,7 @@ impl Viewer {
         self.window = Window { viewport: input.viewport, pixels_per_point: input.pixels_per_point };
         self.show(&input);
         let wishes = self.show_panels(&mut input);
+        self.frame_new_scene();
         wishes.into_iter().for_each(|wish| self.grant(wish));
         // Keys that fly mean nothing else while they do.
         take_flight(&mut input, &mut self.camera);
@@ -166,7 +167,6 @@ impl Viewer {
         }
         self.keeper.look(&mut self.session, &self.view, input.real_s);
         self.capture.listen();
-        self.frame_new_scene();
     }
 
     fn grant(&mut self, wish: Wish) {
@@ -180,7 +180,7 @@ impl Viewer {
 
     fn show_panels(&mut self, input: &mut Input) -> Vec<Wish> {
         let Viewer { gui, session, view, camera, hands, keeper, series, capture, panels, painter, .. } = self;
-        let mut wishes = Vec::new();
+        let (mut wishes, mut free) = (Vec::new(), [1.0; 2]);
         let scale = input.pixels_per_point * view.scale;
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
             if let Some(scenery) = scenery(session, camera, view, hands) {
@@ -191,7 +191,10 @@ impl Viewer {
             }
             let mut board = Board { session, view, settings: &mut keeper.settings, series, capture };
             wishes = panels.show(ui, &mut board);
+            let height = ui.ctx().content_rect().height().max(1.0);
+            free = (ui.available_rect_before_wrap().size() / height).into();
         });
+        camera.set_free(free);
         // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.
         if gui.context().is_pointer_over_egui() {
             for event in &mut input.events {
@@ -203,7 +206,7 @@ impl Viewer {
         wishes
     }
 
-    /// A scene that has just begun is looked at as a whole.
+    /// A scene that has just begun is looked at as a whole, beside its panels.
     fn frame_new_scene(&mut self) {
         let opened = self.session.opened;
         if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {

@@ -4,8 +4,8 @@ use forerun::Vec3;
 
 use super::{Camera, HALF_ANGLE};
 
-/// Panels cover a part of the picture: what is looked at fills no more than this part of it.
-const FILLED: f32 = 0.86;
+/// What is looked at fills no more than this part of what panels leave free.
+const FILLED: f32 = 0.88;
 /// A body is a stray when it is so many times as far from the middle as half of all bodies are.
 const STRAY: f32 = 7.0;
 /// Fewer bodies have no strays.
@@ -25,9 +25,10 @@ pub struct Framed {
 }
 
 impl Framed {
-    /// From where all of these balls (centre and radius, metres) are seen but for strays; none without balls. `aspect` of the picture: width over height.
+    /// From where all of these balls (centre and radius, metres) are seen but for strays; none without balls. `free`: width and height of what is free of panels, in
+    /// heights of the picture.
     #[must_use]
-    pub fn around(balls: &[(Vec3, f32)], aspect: f32) -> Option<Framed> {
+    pub fn around(balls: &[(Vec3, f32)], free: [f32; 2]) -> Option<Framed> {
         let kept = without_strays(balls);
         let low = kept.iter().fold(Vec3::INFINITY, |low, (at, radius)| low.min(*at - *radius));
         let high = kept.iter().fold(Vec3::NEG_INFINITY, |high, (at, radius)| high.max(*at + *radius));
@@ -41,15 +42,15 @@ impl Framed {
         let flatness = (depth - size.y).max(0.0) / across;
         let pitch = 0.34 + 0.52 * flatness.min(1.0);
         let yaw = if size.x >= size.z { 0.42 } else { std::f32::consts::FRAC_PI_2 - 0.42 };
-        Some(Framed { target: 0.5 * (low + high), distance: 1.0, yaw, pitch }.fitting(&kept, aspect))
+        Some(Framed { target: 0.5 * (low + high), distance: 1.0, yaw, pitch }.fitting(&kept, free))
     }
 
     /// In the same direction, so near that all balls (centre and radius, metres) just fit.
     #[must_use]
-    pub fn fitting(self, balls: &[(Vec3, f32)], aspect: f32) -> Framed {
+    pub fn fitting(self, balls: &[(Vec3, f32)], free: [f32; 2]) -> Framed {
         let camera = Camera { yaw: self.yaw, pitch: self.pitch, ..Camera::default() };
         let (forward, axes) = (camera.forward(), [camera.right(), camera.up()]);
-        let tangents = [FILLED * HALF_ANGLE.tan() * aspect, FILLED * HALF_ANGLE.tan()];
+        let tangents = free.map(|free| FILLED * HALF_ANGLE.tan() * free.max(0.1));
         // A ball is left of a side of the picture where its distance from that side is its radius or more.
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for (centre, radius) in balls {
@@ -102,10 +103,14 @@ mod tests {
         let row: Vec<(Vec3, f32)> = (0..40).map(|i| (Vec3::new(i as f32, 0.5, 0.0), 0.6)).collect();
         let tower: Vec<(Vec3, f32)> = (0..40).map(|i| (Vec3::new(2.0, i as f32, -7.0), 0.6)).collect();
         for (balls, aspect) in [(&row, 1.6), (&tower, 1.6), (&row, 0.5)] {
-            let framed = Framed::around(balls, aspect).unwrap();
+            let framed = Framed::around(balls, [aspect, 1.0]).unwrap();
             let seen = places(&framed, balls, aspect);
             let most = seen.iter().flatten().fold(0.0_f32, |most, at| most.max(at.abs()));
             assert!((0.6..0.9).contains(&most), "{most}");
+            // Half as much room: half as large.
+            let less = Framed::around(balls, [0.5 * aspect, 0.5]).unwrap();
+            let seen = places(&less, balls, aspect);
+            assert!(seen.iter().flatten().all(|at| at.abs() < 0.5), "{seen:?}");
         }
     }
 
@@ -116,11 +121,11 @@ mod tests {
             (Vec3::new(cos, 0.0, sin) * (0.02 * i as f32) + Vec3::Y * 0.3, 0.3)
         };
         let mut balls: Vec<(Vec3, f32)> = (0..500).map(spiral).collect();
-        let framed = Framed::around(&balls, 1.6).unwrap();
+        let framed = Framed::around(&balls, [1.6, 1.0]).unwrap();
         assert!(framed.pitch > 0.7, "{}", framed.pitch);
         balls.push((Vec3::new(0.0, -4000.0, 0.0), 0.3));
-        let again = Framed::around(&balls, 1.6).unwrap();
+        let again = Framed::around(&balls, [1.6, 1.0]).unwrap();
         assert!((again.target - framed.target).length() < 0.1 && again.pitch == framed.pitch);
-        assert_eq!(Framed::around(&[], 1.6), None);
+        assert_eq!(Framed::around(&[], [1.6, 1.0]), None);
     }
 }

@@ -27,8 +27,8 @@ pub(crate) enum Push {
 /// What moves the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Motion {
-    /// Of the picture: width over height.
-    pub(crate) aspect: f32,
+    /// Width and height of what is free of panels, in heights of the picture.
+    pub(crate) free: [f32; 2],
     /// Whether a button is held that was pressed beside all panels.
     pub(crate) turning: bool,
     /// Whether the button is held with which keys fly.
@@ -45,7 +45,7 @@ pub(crate) struct Motion {
 impl Default for Motion {
     fn default() -> Self {
         Motion {
-            aspect: 1.6,
+            free: [1.6, 1.0],
             turning: false,
             flying: false,
             fast: false,

@@ -16,7 +16,6 @@ const NOTCH_POINTS: f32 = 24.0;
 
 /// Takes the keys that fly, before they mean anything else.
 pub(crate) fn take_flight(input: &mut Input, camera: &mut Camera) {
-    camera.motion.aspect = input.viewport.width.max(1) as f32 / input.viewport.height.max(1) as f32;
     for event in &mut input.events {
         match event {
             Event::MousePress { button, handled, .. } => {
