@@ -189,7 +189,9 @@ def scrub(viewer, check):
         viewer.press(begin)
         viewer.drag_on(begin, end)
         now = viewer.release()["play"]
-        fine = abs(now["time_s"] - to_s) <= slack and now["samples_hash"] != play["samples_hash"]
+        # The dominoes may all lie by then; in the past they stood.
+        other = what == "the future" or now["samples_hash"] != play["samples_hash"]
+        fine = abs(now["time_s"] - to_s) <= slack and other
         check(fine, f"scrub: the playhead is dragged into {what}", f"{now['time_s']:.3f} s where {to_s:.3f} s was asked")
 
 
@@ -268,7 +270,7 @@ def switch(viewer, check):
 
 
 def session(binary, folder, out, check):
-    with Viewer(binary, "pyramid:5", folder, out) as viewer:
+    with Viewer(binary, "dominoes:40", folder, out) as viewer:
         for part in [start_and_pause, scrub, throw, drag, undo, remove, switch]:
             part(viewer, check)
 

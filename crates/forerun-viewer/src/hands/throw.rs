@@ -11,6 +11,9 @@ use crate::view::View;
 /// No throw begins farther from where it is aimed than this part of the way that is possible at its speed: it would take too long, or not get there.
 const FARTHEST: f32 = 0.6;
 
+/// A throw begins so many times its radius before the eye, if it is not half way by then: nearer, what is thrown would hide what it is aimed at.
+const AWAY: f32 = 8.0;
+
 /// The preview shows so many bodies besides the one that is thrown.
 const OTHERS_MAX: usize = 32;
 
@@ -32,7 +35,7 @@ fn missile(
     let reach =
         if gravity == Vec3::ZERO { f32::INFINITY } else { FARTHEST * speed * speed / gravity.length() };
     let to = hit.map_or(sight.camera.distance, |hit| hit.distance);
-    let clear = (2.0 * radius_of(&def)).min(0.5 * to);
+    let clear = (AWAY * radius_of(&def)).min(0.5 * to);
     let start = clear.max(to - reach);
     let aimed = ray.origin + ray.direction * to;
     def.pose.position = ray.origin + ray.direction * start;
