@@ -44,6 +44,8 @@ const slow = wishes.get("slow")?.split("-").map(Number);
 try {
   await init({ module_or_path: new URL("forerun_web_bg.wasm", import.meta.url) });
   tell("");
+  // Keys go to whatever has the focus.
+  document.querySelector("canvas").focus();
   forerun.run_page(wishes.get("scene") ?? "dominoes", slow ? [slow[0], slow[1] ?? slow[0]] : undefined);
 } catch (error) {
   if (!`${error}`.includes("isn't actually an error")) {
