@@ -12,9 +12,18 @@ function tell(message) {
 window.addEventListener("error", ({ error, message }) => {
   // The window library leaves its starting function by an exception; that is no error.
   if (!`${error?.message ?? message}`.includes("isn't actually an error")) {
-    tell(forerun.last_panic() ?? `${error?.message ?? message}`);
+    tell(lastPanic() ?? `${error?.message ?? message}`);
   }
 });
+
+/** The message of the last panic; there is none before the module is there. */
+function lastPanic() {
+  try {
+    return forerun.last_panic();
+  } catch {
+    return undefined;
+  }
+}
 
 /** The state of the viewer, for scripts. */
 window.forerun_state = () => JSON.parse(forerun.forerun_state());
@@ -33,11 +42,13 @@ const wishes = new URLSearchParams(location.search);
 const slow = wishes.get("slow")?.split("-").map(Number);
 
 try {
-  await init();
+  await init({ module_or_path: new URL("forerun_web_bg.wasm", import.meta.url) });
   tell("");
+  // Keys go to whatever has the focus.
+  document.querySelector("canvas").focus();
   forerun.run_page(wishes.get("scene") ?? "dominoes", slow ? [slow[0], slow[1] ?? slow[0]] : undefined);
 } catch (error) {
   if (!`${error}`.includes("isn't actually an error")) {
-    tell(`The viewer cannot start: ${forerun.last_panic?.() ?? error.message ?? error}. It needs a browser with WebAssembly SIMD and WebGL 2.`);
+    tell(`The viewer cannot start: ${lastPanic() ?? error.message ?? error}. It needs a browser with WebAssembly SIMD and WebGL 2.`);
   }
 }

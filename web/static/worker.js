@@ -18,7 +18,7 @@ onmessage = async ({ data }) => {
   if (data.open) {
     try {
       forerun = await import("./forerun_web.js");
-      await forerun.default();
+      await forerun.default({ module_or_path: new URL("forerun_web_bg.wasm", location.href) });
       postMessage({ ready: true });
       attempt(() => open(data.open));
     } catch (error) {

@@ -89,6 +89,8 @@ impl Drop for Worker {
 #[derive(Debug, Default)]
 pub struct Host {
     slow_ms: SlowMs,
+    /// How slow it is at least, whatever the viewer says.
+    least_ms: [f64; 2],
 }
 
 /// A scene that a worker reads, and whose physics it starts.
@@ -124,7 +126,7 @@ impl Host {
     /// The page; every frame of the physics is made slower, from the first number of milliseconds to the second: to see that the page does not mind.
     #[must_use]
     pub fn new(slow_ms: [f64; 2]) -> Host {
-        Host { slow_ms: Rc::new(Cell::new(slow_ms)) }
+        Host { slow_ms: Rc::new(Cell::new(slow_ms)), least_ms: slow_ms }
     }
 
     /// Begins to start a scene.
@@ -170,7 +172,7 @@ impl Host {
 
     /// Makes every step that is computed from now on this much slower. Seconds.
     pub fn slow_down(&self, seconds: f32) {
-        self.slow_ms.set([f64::from(seconds.max(0.0)) * 1000.0; 2]);
+        self.slow_ms.set(self.least_ms.map(|least_ms| least_ms + f64::from(seconds.max(0.0)) * 1000.0));
     }
 
     /// Ends a driver: its worker ends with its link.
