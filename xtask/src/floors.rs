@@ -3,7 +3,7 @@
 use crate::tidy::Complaint;
 
 /// Every crate of ours and its floor.
-const FLOORS: [(&str, u32); 10] = [
+const FLOORS: [(&str, u32); 12] = [
     ("forerun-lanes", 0),
     ("forerun-geometry", 1),
     ("forerun-dynamics", 2),
@@ -14,6 +14,8 @@ const FLOORS: [(&str, u32); 10] = [
     ("forerun-viewer", 5),
     ("forerun-python", 5),
     ("forerun-wasm", 5),
+    ("forerun-web", 6),
+    ("forerun-web-pack", 0),
 ];
 
 /// Complains about a `Cargo.toml` that depends on its own or a higher floor. Tests may look up: `dev-dependencies` are free.

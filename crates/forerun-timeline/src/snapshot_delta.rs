@@ -25,6 +25,12 @@ use crate::commanding::{Effect, FrameEffects};
 use crate::snapshot::Doubt;
 use crate::{Change, CommandKey, Edit, Frame, Snapshot};
 
+/// A frame, on whom its commands act, and the states in which the step left those bodies.
+pub type EffectsAt = (Frame, Vec<(BodyId, Option<BodyState>)>);
+
+/// A frame, and the commands in force at it.
+pub type CommandsAt = (Frame, Vec<(CommandKey, Arc<Change>)>);
+
 /// What differs between two snapshots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SnapshotDelta {
@@ -41,13 +47,13 @@ pub struct SnapshotDelta {
     pub doubts: Vec<(BodyId, Frame, bool)>,
     /// The frames at which commands did something else than before: on whom they act now, and the state in which the step left that body, if
     /// it was there. Sorted; nobody where no command acts any more.
-    pub effects: Vec<(Frame, Vec<(BodyId, Option<BodyState>)>)>,
+    pub effects: Vec<EffectsAt>,
     /// How many names are in use.
     pub names: u32,
     /// The bodies that are something else than before. Sorted by body.
     pub histories: Vec<HistoryDelta>,
     /// The frames of which other commands are in force than before: all that are now. Sorted; none where there are no more.
-    pub commands: Vec<(Frame, Vec<(CommandKey, Arc<Change>)>)>,
+    pub commands: Vec<CommandsAt>,
     /// What the last batches of commands cost, if that is not as before.
     pub edits: Option<Vec<Edit>>,
     /// Whether there is something to undo, and to do again.
@@ -255,10 +261,7 @@ impl SnapshotDelta {
 
 type Effects = BTreeMap<Frame, Arc<FrameEffects>>;
 
-fn effects_delta(
-    before: Option<&Effects>,
-    after: &Effects,
-) -> Vec<(Frame, Vec<(BodyId, Option<BodyState>)>)> {
+fn effects_delta(before: Option<&Effects>, after: &Effects) -> Vec<EffectsAt> {
     if before.is_some_and(|before| std::ptr::eq(before, after)) {
         return Vec::new();
     }

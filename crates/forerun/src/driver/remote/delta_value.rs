@@ -25,7 +25,7 @@ pub(super) struct DeltaValue {
     valid_to: u64,
     runs: Vec<RunValue>,
     doubts: Vec<(u32, u64, bool)>,
-    effects: Vec<(u64, Vec<(u32, Option<Words>)>)>,
+    effects: Vec<EffectsValue>,
     names: u32,
     histories: Vec<HistoryValue>,
     environments: Option<Vec<(u64, Three, StepValue)>>,
@@ -35,6 +35,9 @@ pub(super) struct DeltaValue {
     undoable: (bool, bool),
     area_m: f32,
 }
+
+/// A frame, on whom its commands act, and where the step left those bodies.
+type EffectsValue = (u64, Vec<(u32, Option<Words>)>);
 
 /// First and last frame, what the states are compared with, and the states as in a recording.
 #[derive(Debug, Serialize, Deserialize)]
@@ -128,7 +131,7 @@ pub(super) fn delta_of(value: DeltaValue, shapes: &[Shape]) -> Result<SnapshotDe
         (Frame(from), environment)
     };
     let state = |(body, words): (u32, Option<Words>)| (BodyId(body), words.map(state_of));
-    let effect = |(f, on): (u64, Vec<(u32, Option<Words>)>)| (Frame(f), on.into_iter().map(state).collect());
+    let effect = |(f, on): EffectsValue| (Frame(f), on.into_iter().map(state).collect());
     let doubt = |(body, frame, arrives)| (BodyId(body), Frame(frame), arrives);
     Ok(SnapshotDelta {
         oldest: Frame(value.oldest),

@@ -1,3 +1,5 @@
+//! A display and a physics that share no memory: the same pictures, and no harm from messages that are spoiled.
+
 use forerun_timeline::check::Random;
 use forerun_timeline::{Change, CommandError, Preview, Progress};
 
