@@ -19,7 +19,7 @@ fn wrong_usage_and_bad_input_end_with_2_and_a_message_on_standard_error() {
         (&["run", "no/such/file.toml"], "no/such/file.toml: cannot be read"),
         (&["run", "stack", "--seconds", "-3"], "--seconds"),
         (&["validate", "nosuch"], "there is no case \"nosuch\""),
-        (&["view"], "not there yet"),
+        (&["view"], "no window can be opened"),
         (&["bake", "stack", "-o", "x.glb"], "not there yet"),
     ];
     for (arguments, message) in cases {

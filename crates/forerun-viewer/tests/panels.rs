@@ -133,8 +133,8 @@ fn the_wheel_zooms_the_strip_round_the_mouse() {
 fn the_button_in_the_middle_of_the_transport_plays() {
     let mut clerk = Clerk::new();
     let strip = clerk.strip();
-    // Buttons are 24 points wide, 2 apart: the fourth.
-    let at = pos2(strip.rect[0] + 3.5 * 26.0, strip.rect[1] - 16.0);
+    // Buttons are 24 points wide, 2 apart, from 8 points off the window's edge: the middle of the fourth.
+    let at = pos2(8.0 + 3.0 * 26.0 + 12.0, strip.rect[1] - 16.0);
     clerk.press(at, true);
     let wishes = clerk.press(at, false);
     assert_eq!(wishes, [Wish::Do(Action::PlayPause)]);
