@@ -106,15 +106,16 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
         Event::RedrawRequested(_) => {
             let output = viewer.picture(inputs.generate(&context));
             let done = errand.run(&mut viewer);
-            if let Some(reporter) = &mut reporter {
-                reporter.write(&viewer);
-            }
             if viewer.title() != title {
                 title = viewer.title();
                 window.set_title(&title);
             }
             pace.drawn(viewer.is_still() || window.is_minimized() == Some(true));
             let ended = output.exit || done || context.swap_buffers().is_err();
+            // What a script reads is on the screen already.
+            if let Some(reporter) = &mut reporter {
+                reporter.write(&viewer);
+            }
             *control = if ended { ControlFlow::Exit } else { pace.wait() };
         }
         Event::WindowEvent { event, .. } => {
