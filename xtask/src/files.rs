@@ -6,7 +6,7 @@ use std::{fs, io};
 use crate::tidy::Complaint;
 
 /// Folders that are made, not written.
-const NOT_OURS: [&str; 5] = ["target", ".git", "out", "node_modules", "pkg"];
+const NOT_OURS: [&str; 6] = ["target", ".git", "out", "dist", "node_modules", "pkg"];
 
 /// Larger files do not belong into a repository of text.
 const BYTES_MAX: u64 = 256 * 1024;
