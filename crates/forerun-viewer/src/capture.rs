@@ -103,6 +103,16 @@ impl Capture {
         !self.wants.is_empty() || !self.saving.is_empty() || self.film.is_some()
     }
 
+    /// No more pictures come: ends the film, and says whether nothing is being written any more.
+    pub fn finish(&mut self) -> bool {
+        self.wants.clear();
+        if let Some(film) = self.film.as_mut().filter(|film| !film.is_ending()) {
+            film.end();
+        }
+        self.listen();
+        !self.is_busy()
+    }
+
     /// Begins a film, or ends the one that is being taken.
     pub fn toggle_film(&mut self, settings: &FilmSettings, session: &Session, window: [u32; 2]) {
         match &mut self.film {

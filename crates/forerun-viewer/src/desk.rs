@@ -54,7 +54,12 @@ impl Desk<'_> {
         let Desk { session, view, .. } = self;
         match action {
             Action::Reload => session.reload(),
-            Action::Coupled => session.switch_driver(),
+            Action::Coupled => {
+                if let Some(play) = session.play_mut() {
+                    self.hands.cancel(play);
+                }
+                session.switch_driver();
+            }
             Action::Help => view.open.help ^= true,
             Action::Plots => view.open.plots ^= true,
             Action::Inspector => view.open.inspector ^= true,
@@ -83,14 +88,26 @@ impl Desk<'_> {
                     play.selection.clear();
                 }
             }
-            Action::Undo => play.undo(),
-            Action::Redo => play.redo(),
+            Action::Undo => {
+                // What is in hand is the last thing that was done.
+                if !self.hands.cancel(play) {
+                    play.undo();
+                }
+            }
+            Action::Redo => {
+                self.hands.cancel(play);
+                play.redo();
+            }
             action => perform_in_time(play, action),
         }
     }
 }
 
 fn perform_in_time(play: &mut Play, action: Action) {
+    if play.is_coupled() && action != Action::PlayPause {
+        // The traditional driver has neither a past nor a future to go to.
+        return;
+    }
     let snapshot = play.picture.snapshot.clone();
     match action {
         Action::PlayPause => play.set_paused(!play.paused),

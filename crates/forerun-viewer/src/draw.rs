@@ -89,7 +89,7 @@ pub struct Painter {
     slice: FieldSlice,
     lines: Lines,
     line_drawer: LineDrawer,
-    opened: u64,
+    opened: (u64, bool),
 }
 
 impl Painter {
@@ -107,7 +107,7 @@ impl Painter {
             slice: FieldSlice::default(),
             lines: Lines::default(),
             line_drawer: LineDrawer::new(context),
-            opened: 0,
+            opened: (0, false),
         }
     }
 
@@ -119,10 +119,12 @@ impl Painter {
 
     /// Draws the picture that the session shows.
     pub fn draw(&mut self, target: &RenderTarget<'_>, viewport: Viewport, scenery: &Scenery<'_>) {
-        if self.opened != scenery.scene_number {
+        // Another driver may have shapes of its own.
+        let opened = (scenery.scene_number, scenery.play.is_coupled());
+        if self.opened != opened {
             self.bodies.forget();
             self.ghosts.forget();
-            self.opened = scenery.scene_number;
+            self.opened = opened;
         }
         self.place(scenery);
         let eye = Eye::new(scenery.camera, viewport, self.bodies.reach);

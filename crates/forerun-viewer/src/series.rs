@@ -57,8 +57,6 @@ pub struct Series {
     pub edits: Ring<EditRow>,
     /// Whether the plots are held: nothing is added.
     pub held: bool,
-    /// Longest time between two pictures since the scene began. Seconds.
-    pub interval_max_s: f64,
     scene: u64,
     /// The window's clock when the scene began.
     began_s: f64,
@@ -84,7 +82,6 @@ impl Default for Series {
             steps: Ring::with_capacity(STEPS),
             edits: Ring::with_capacity(EDITS),
             held: false,
-            interval_max_s: 0.0,
             scene: 0,
             began_s: 0.0,
             last_real_s: None,
@@ -102,7 +99,6 @@ impl Series {
         }
         let real_s = real_s - self.began_s;
         let row = self.row(play, real_s);
-        self.interval_max_s = self.interval_max_s.max(row.interval_ms * 1e-3);
         self.take_steps(play, real_s);
         let edit = self.finished_edit(&play.picture, real_s);
         if !self.held {

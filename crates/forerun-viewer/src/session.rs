@@ -117,7 +117,11 @@ impl Session {
         if let Stage::Playing(play) = &mut self.stage {
             play.slow_coupled(Duration::from_secs_f32(slow_down_s));
             if let Err(message) = play.show(real_s) {
-                self.stage = Stage::Failed(message);
+                let before = std::mem::replace(&mut self.stage, Stage::Failed(message));
+                if let Stage::Playing(play) = before {
+                    // Nobody waits for the step that physics may be in.
+                    self.host.end(play.driver);
+                }
             }
         }
     }

@@ -80,6 +80,12 @@ impl Settings {
         }
         Self::rescale(view, 1.0);
         view.ghosts.count = view.ghosts.count.clamp(1, 20);
+        let within = |value: &mut f32, least: f32, most: f32, otherwise: f32| {
+            *value = if value.is_finite() { value.clamp(least, most) } else { otherwise };
+        };
+        within(&mut view.ghosts.opacity, 0.0, 1.0, default.ghosts.opacity);
+        within(&mut view.ghosts.trail_seconds, 0.0, 10.0, default.ghosts.trail_seconds);
+        within(&mut view.overlays.field_height, 0.0, 1.0, default.overlays.field_height);
         self.window.size = self.window.size.map(|side| side.clamp(320, 16_384));
         self.recent.truncate(RECENT_MAX);
         self.film.mend();

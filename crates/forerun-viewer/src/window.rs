@@ -6,6 +6,7 @@ mod pace;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
+use std::time::Duration;
 
 use three_d::{FrameInputGenerator, SurfaceSettings, WindowedContext};
 use winit::dpi::LogicalSize;
@@ -19,6 +20,10 @@ use crate::host::{self, Host, SceneSource};
 use crate::settings::{Settings, WindowPlace};
 use crate::viewer::Viewer;
 
+/// Files that are still being written when the window closes are waited for so long, and looked at so often.
+const LAST_FILES: Duration = Duration::from_secs(20);
+const LOOK_AGAIN: Duration = Duration::from_millis(10);
+
 /// How the window begins.
 #[derive(Debug)]
 pub struct WindowOptions {
@@ -28,7 +33,7 @@ pub struct WindowOptions {
     pub host: Host,
     /// Width and height in points; none for what the system gives.
     pub size: Option<[u32; 2]>,
-    /// A file that the state is written to, as JSON, whenever it changes: for scripts.
+    /// A file that the state is written to, as JSON, after every picture: for scripts.
     pub report: Option<PathBuf>,
     /// Display time to begin at. Seconds.
     pub time_s: Option<f64>,
@@ -134,9 +139,19 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
                 viewer.keeper.place(place_of(&window));
             }
             viewer.keeper.keep(&viewer.view);
+            finish(&mut viewer);
         }
         _ => {}
     });
+}
+
+/// The process ends with the window: what is being written is waited for.
+fn finish(viewer: &mut Viewer) {
+    let mut waited = Duration::ZERO;
+    while !viewer.capture.finish() && waited < LAST_FILES {
+        std::thread::sleep(LOOK_AGAIN);
+        waited += LOOK_AGAIN;
+    }
 }
 
 fn place_of(window: &Window) -> WindowPlace {

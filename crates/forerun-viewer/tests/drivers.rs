@@ -186,3 +186,18 @@ fn another_scene_starts_anew() {
     assert_eq!(user.play().to_undo().1, 0);
     assert!(user.play().selection.bodies().is_empty());
 }
+
+#[test]
+fn a_rewind_ends_at_the_oldest_frame_and_stands_still() {
+    let mut user = User::of(BOXES);
+    user.pictures(30);
+    user.play().set_rewinding(true);
+    user.wait("it comes to the start", |user| {
+        user.picture(Vec::new());
+        !user.play().rewinding
+    });
+    assert!(user.play().paused && user.play().picture.time_s < 1e-6);
+    user.play().set_paused(false);
+    user.pictures(10);
+    assert!(user.play().picture.time_s > 0.0);
+}

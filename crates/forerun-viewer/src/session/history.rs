@@ -45,12 +45,6 @@ impl History {
         self.done.pop_if(|step| step.commands.is_empty());
     }
 
-    /// Whether a step has begun and not ended.
-    #[must_use]
-    pub fn is_open(&self) -> bool {
-        self.open
-    }
-
     /// A command was given. What was taken back before cannot be done again.
     pub fn give(&mut self, command: Command) {
         self.undone.clear();

@@ -95,7 +95,10 @@ impl Play {
     fn show_decoupled(&mut self, real_s: f64, since_s: f64) -> Result<(), DriverError> {
         if self.rewinding {
             let asked = self.picture.time_s - REWIND_SPEED * self.speed * since_s;
-            self.rewinding = self.driver.seek(asked)? <= asked + 1e-9;
+            if self.driver.seek(asked)? > asked + 1e-9 {
+                // There is nothing before it: it stands still, and says so.
+                self.set_paused(true);
+            }
         }
         self.picture = self.driver.show(real_s)?;
         self.driver.sample_all(&self.picture, &mut self.samples);
@@ -103,13 +106,18 @@ impl Play {
             self.refused(&refusal);
         }
         self.history.forget_to(self.picture.snapshot.oldest());
-        let answers = self.driver.answers()?;
-        self.questions.learn(answers);
+        match self.driver.answers() {
+            Ok(answers) => self.questions.learn(answers),
+            // Who answers is gone; physics is not.
+            Err(error) => self.notice = Some(error.to_string()),
+        }
         Ok(())
     }
 
     fn refused(&mut self, refusal: &Refusal) {
-        if let Some(key) = refusal.key() {
+        // What was not replaced stands as it was.
+        let stands = matches!(refusal, Refusal::Replace(..));
+        if let Some(key) = refusal.key().filter(|_| !stands) {
             self.history.forget(key);
         }
         self.notice = Some(refusal.to_string());
@@ -171,7 +179,11 @@ impl Play {
     /// Goes so many frames on or back, to a whole frame, and stands still.
     pub fn step(&mut self, frames: i64) {
         self.set_paused(true);
-        let frame = (self.picture.time_s / self.frame_seconds() + 1e-6).floor() as i64 + frames;
+        const HAIR: f64 = 1e-6;
+        let shown = self.picture.time_s / self.frame_seconds();
+        // From between two frames, the one before is a step back and the one after a step on.
+        let from = if frames < 0 { (shown - HAIR).ceil() } else { (shown + HAIR).floor() };
+        let frame = from as i64 + frames;
         self.seek(frame.max(0) as f64 * self.frame_seconds());
     }
 

@@ -43,9 +43,12 @@ impl Questions {
                         self.inspected = Some((asked, inspection));
                     }
                 }
-                // A frame that is not stored any more, or a throw from inside a wall: there is nothing to show, and the next picture asks again.
+                // A frame that is not stored any more: the next picture asks again. Or a throw that is not possible: nothing comes of it.
                 Err(_) => {
                     self.inspection.take_if(|(asked, _)| *asked == ticket);
+                    if self.preview.as_ref().is_some_and(|(asked, _)| *asked == ticket) {
+                        self.previewed = None;
+                    }
                 }
             }
         }

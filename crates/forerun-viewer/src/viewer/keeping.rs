@@ -6,9 +6,13 @@ use super::{Viewer, scenery};
 use crate::capture::{self, Drawn, FilmSize, Shot};
 use crate::series;
 
+/// A window that was not drawn for longer (a hidden page, a machine asleep) goes on from where it was. Seconds.
+const GAP_MAX_S: f64 = 1.0;
+
 impl Viewer {
     /// The session's clock goes with the window's; while a film is taken, by a picture of the film at a time.
     pub(super) fn turn_clock(&mut self, elapsed_s: f64) {
+        let elapsed_s = elapsed_s.min(GAP_MAX_S);
         let goes_on_s = match &mut self.capture.film {
             Some(film) => film.tick(elapsed_s),
             None => elapsed_s,

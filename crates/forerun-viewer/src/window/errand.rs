@@ -2,6 +2,7 @@
 
 use super::Screenshot;
 use crate::capture::{Shot, Want};
+use crate::session::Stage;
 use crate::viewer::Viewer;
 
 /// How far behind the time that was asked for is near enough. Seconds.
@@ -24,6 +25,10 @@ impl Errand {
         let age_s = viewer.series.pictures.last().map_or(0.0, |picture| picture.row.time_real_s);
         if let Some(shot) = viewer.capture.handed.take() {
             return self.screenshot.take().is_some_and(|screenshot| screenshot.keep(&shot));
+        }
+        if let (Stage::Failed(message), Some(_)) = (&viewer.session.stage, &self.screenshot) {
+            eprintln!("there is nothing to draw: {message}");
+            return true;
         }
         let Some(play) = viewer.session.play_mut() else { return false };
         if self.paused {
