@@ -201,3 +201,20 @@ fn a_rewind_ends_at_the_oldest_frame_and_stands_still() {
     user.pictures(10);
     assert!(user.play().picture.time_s > 0.0);
 }
+
+#[test]
+fn what_an_impossible_value_did_not_replace_can_be_undone() {
+    let mut user = User::of(BOXES);
+    user.play().set_paused(true);
+    user.settle();
+    for scale in [2.0, f32::NAN] {
+        user.play().edit(Change::SetGravityScale { body: ALONE, scale });
+        user.settle();
+    }
+    user.play().end_edit();
+    assert!(user.play().notice.as_deref().is_some_and(|notice| notice.contains("scale")));
+    assert_eq!(user.play().to_undo().1, 1);
+    user.play().undo();
+    user.settle();
+    assert!((user.play().body(ALONE).expect("it is there").gravity_scale - 1.0).abs() < 1e-6);
+}
