@@ -4,6 +4,7 @@ mod harness;
 
 use forerun::{BodyId, Change, Frame, Pose, Vec3};
 use forerun_viewer::SceneSource;
+use forerun_viewer::series::Series;
 use forerun_viewer::view::Tool;
 use harness::{BOXES, User};
 use three_d::{Key, Modifiers};
@@ -45,7 +46,7 @@ fn the_scene_goes_on_under_the_traditional_driver_and_back() {
     });
     assert_eq!(user.play().samples.len(), 5, "one more, one less");
     assert!(user.play().sample(ALONE).is_none());
-    assert_eq!(user.play().notice, None);
+    assert!(user.play().notice.last().is_some_and(|notice| notice.contains("cannot be undone any more")));
     // It flies on at the speed that it had.
     let flown = user.play().sample(HANGING).expect("there").pose.position - before[4].1;
     let seconds = (user.play().picture.time_s - time_s) as f32;
@@ -65,7 +66,35 @@ fn the_scene_goes_on_under_the_traditional_driver_and_back() {
     user.click(click);
     assert_eq!(user.play().to_undo().1, 1);
     user.pictures(3);
-    assert_eq!(user.play().notice, None);
+}
+
+#[test]
+fn a_switch_that_takes_nothing_away_says_nothing() {
+    let mut user = User::of(BOXES);
+    for _ in 0..2 {
+        user.key(Key::K, Modifiers::default());
+        user.picture(Vec::new());
+    }
+    assert!(!user.play().is_coupled());
+    assert_eq!(user.play().notice.last(), None);
+}
+
+#[test]
+fn a_picture_that_was_put_off_on_purpose_has_no_interval() {
+    let mut user = User::of(BOXES);
+    let mut series = Series::default();
+    let mut intervals = Vec::new();
+    for picture in 0..6 {
+        user.picture(Vec::new());
+        if picture == 3 {
+            user.real_s += 0.1;
+            series.leave_out_interval();
+        }
+        let (opened, real_s) = (user.session.opened, user.real_s);
+        series.take(user.play(), opened, real_s);
+        intervals.push(series.pictures.last().expect("just taken").row.interval_ms.round() as u32);
+    }
+    assert_eq!(intervals, [0, 17, 17, 0, 17, 17]);
 }
 
 #[test]
@@ -114,7 +143,7 @@ fn a_value_that_is_dragged_is_one_command_and_one_step() {
     }
     user.settle();
     assert_eq!(user.states_to(60), before);
-    assert_eq!(user.play().notice, None);
+    assert_eq!(user.play().notice.last(), None);
 }
 
 #[test]
@@ -162,7 +191,7 @@ fn what_is_refused_is_no_step_and_is_said() {
     user.play().change(Change::SetGravityScale { body: ALONE, scale: f32::NAN });
     user.settle();
     assert_eq!(user.play().to_undo().1, 0);
-    assert!(user.play().notice.as_deref().is_some_and(|notice| notice.contains("scale")));
+    assert!(user.play().notice.last().is_some_and(|notice| notice.contains("scale")));
 }
 
 #[test]
@@ -212,7 +241,7 @@ fn what_an_impossible_value_did_not_replace_can_be_undone() {
         user.settle();
     }
     user.play().end_edit();
-    assert!(user.play().notice.as_deref().is_some_and(|notice| notice.contains("scale")));
+    assert!(user.play().notice.last().is_some_and(|notice| notice.contains("scale")));
     assert_eq!(user.play().to_undo().1, 1);
     user.play().undo();
     user.settle();

@@ -12,6 +12,18 @@ use crate::session::Play;
 const SPEEDS: [(f64, &str); 7] =
     [(0.125, "1/8x"), (0.25, "1/4x"), (0.5, "1/2x"), (1.0, "1x"), (2.0, "2x"), (4.0, "4x"), (8.0, "8x")];
 
+/// With less room beside the time the frame is not told. Points.
+const FRAME_ROOM: f32 = 400.0;
+/// With less room physics is told of in few words. Points.
+const WORDS_ROOM: f32 = 280.0;
+
+/// How much is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Words {
+    All,
+    Few,
+}
+
 /// How physics is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Physics {
@@ -25,14 +37,20 @@ enum Physics {
 
 pub(super) fn show(ui: &mut Ui, play: &mut Play, palette: &Palette, wishes: &mut Vec<Wish>) {
     ui.horizontal(|ui| {
-        buttons(ui, play, wishes);
+        ui.scope(|ui| buttons(ui, play, wishes));
         ui.add_space(6.0);
         ui.add_enabled_ui(!play.is_coupled(), |ui| speeds(ui, play));
         ui.add_space(6.0);
         let shown = format!("{:>8.3} s", play.picture.time_s);
         ui.label(RichText::new(shown).monospace().strong().size(15.0)).on_hover_text("Display time");
-        ui.label(RichText::new(format!("frame {}", play.picture.frame.0)).weak());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| physics(ui, play, palette));
+        let room = ui.available_width();
+        if room > FRAME_ROOM {
+            ui.label(RichText::new(format!("frame {}", play.picture.frame.0)).weak());
+        }
+        let words = if room > WORDS_ROOM { Words::All } else { Words::Few };
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            physics(ui, play, palette, words);
+        });
     });
 }
 
@@ -82,10 +100,14 @@ fn speeds(ui: &mut Ui, play: &mut Play) {
     }
 }
 
-fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
+fn physics(ui: &mut Ui, play: &Play, palette: &Palette, words: Words) {
     let picture = &play.picture;
     if let Some(coupled) = play.coupled() {
-        let text = format!("coupled: steps of {:.1} ms", 1e3 * coupled.step_s());
+        let step_ms = 1e3 * coupled.step_s();
+        let text = match words {
+            Words::All => format!("coupled: steps of {step_ms:.1} ms"),
+            Words::Few => format!("steps of {step_ms:.0} ms"),
+        };
         ui.label(text)
             .on_hover_text("Physics and display take turns: who shows a picture waits for its step.");
         return;
@@ -106,7 +128,10 @@ fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
         }
     };
     let ahead_s = ahead as f64 * play.frame_seconds();
-    let text = format!("physics {word}, {ahead} frames ({ahead_s:.2} s) ahead");
+    let text = match words {
+        Words::All => format!("physics {word}, {ahead} frames ({ahead_s:.2} s) ahead"),
+        Words::Few => format!("{ahead_s:.2} s ahead"),
+    };
     let response = ui.label(text);
     let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().circle_filled(dot.center(), 4.5, colour);
