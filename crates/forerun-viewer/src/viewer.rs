@@ -216,7 +216,10 @@ impl Viewer {
     /// A scene that has just begun is looked at as a whole, beside its panels.
     fn frame_new_scene(&mut self) {
         let opened = self.session.opened;
-        if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {
+        // Only with the second picture it is known how large panels are on a screen of fine pixels.
+        let placed = self.pictures > 1;
+        if placed && self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty())
+        {
             self.perform(Action::FrameAll);
             self.camera.arrive();
             self.framed = opened;

@@ -24,7 +24,7 @@ pub(super) const MOUSE: &[(&str, &str)] = &[
 ];
 
 /// So wide is a column of the list with its gap. Points.
-const COLUMN: f32 = 385.0;
+const COLUMN: f32 = 400.0;
 
 pub(super) fn show(ctx: &egui::Context, view: &mut View) {
     let room = ctx.content_rect();
@@ -34,6 +34,7 @@ pub(super) fn show(ctx: &egui::Context, view: &mut View) {
         .collapsible(false)
         .resizable(false)
         .default_width(COLUMN * columns as f32)
+        .default_height(room.height() - 80.0)
         .pivot(Align2::CENTER_CENTER)
         .default_pos(room.center())
         .show(ctx, |ui| {

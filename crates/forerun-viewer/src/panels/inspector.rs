@@ -87,10 +87,13 @@ fn motion(ui: &mut Ui, play: &mut Play, id: BodyId, sample: &Sample) {
 /// What it is made of.
 fn matter(ui: &mut Ui, play: &mut Play, id: BodyId, body: &Body) {
     if body.is_dynamic() {
-        let mut mass = 1.0 / body.inverse_mass;
+        let mut mass = match play.edited() {
+            Some(Change::SetMass { body, mass }) if *body == id => *mass,
+            _ => 1.0 / body.inverse_mass,
+        };
         let speed = 0.01 * f64::from(mass);
         if row(ui, "mass", DragValue::new(&mut mass).speed(speed).range(1e-6..=1e9).suffix(" kg")) {
-            play.edit_mass(id, mass);
+            play.edit(Change::SetMass { body: id, mass });
         }
     }
     let mut material = match play.edited() {

@@ -250,6 +250,7 @@ pub(super) fn label_of(change: &Change) -> &'static str {
         Change::SetMaterial { .. } => "set surface",
         Change::SetForce { .. } => "set force",
         Change::SetGravityScale { .. } => "set gravity scale",
+        Change::SetMass { .. } => "set mass",
         Change::SetKind { .. } => "set kind",
         Change::SetGravity { .. } => "set gravity",
     }
