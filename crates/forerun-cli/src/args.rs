@@ -10,7 +10,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Rigid-body physics that runs ahead of the display.
 ///
-/// Without a command: the domino experiment, 30 seconds in real time, with charts.
+/// Without a command: 255 dominoes in the viewer; where no window can open, the same for 30 seconds against the clock, with charts in
+/// forerun-output.
 #[derive(Debug, Parser)]
 #[command(name = "forerun", version)]
 pub(crate) struct Cli {
@@ -209,7 +210,7 @@ pub(crate) struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ValidateArgs {
-    /// Cases to run [default: all but those that take minutes]
+    /// Cases to run; a name that does not exist lists them all [default: all that take less than ten seconds]
     pub(crate) cases: Vec<String>,
     /// Exit with code 1 when a figure misses its limit
     #[arg(long)]

@@ -48,6 +48,9 @@ pub(crate) struct Plan {
     /// By contact of the group.
     touches: Vec<Touching>,
     next: Vec<u32>,
+    /// By member that is the root of its component: whether that moves, and whether something holds it.
+    awake: Vec<bool>,
+    held: Vec<bool>,
 }
 
 /// What the plan asks of a contact.
@@ -216,14 +219,14 @@ impl Plan {
         if full == 0 || !members.iter().zip(&self.traits).any(rests) {
             return;
         }
-        let roots = &self.roots;
-        let mut awake = vec![false; members.len()];
+        let Plan { roots, awake, held, .. } = self;
+        fill(awake, members.len(), false);
+        fill(held, members.len(), false);
         for (i, (member, traits)) in members.iter().zip(&self.traits).enumerate() {
             if traits.dynamic && !rests((member, traits)) {
                 awake[roots.root(i)] = true;
             }
         }
-        let mut held = vec![false; members.len()];
         for c in &self.touches {
             for (support, carried) in [(c.first, c.second), (c.second, c.first)] {
                 let support = &members[support as usize];

@@ -7,6 +7,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use common::{heap_of_rings, pyramid, run, world_of};
+use forerun_dynamics::BodyDef;
+use forerun_geometry::shape::Sphere;
+use forerun_geometry::{Shape, Vec3};
 
 thread_local! {
     static COUNT: Cell<u32> = const { Cell::new(0) };
@@ -45,6 +48,23 @@ fn a_steady_step_allocates_nothing() {
         run(&mut world, 50);
         assert_eq!(COUNT.get() - before, 0, "rest after {rest_seconds} s");
     }
+}
+
+#[test]
+fn a_steady_step_where_some_rest_and_others_move_allocates_nothing() {
+    // A pyramid at rest, and beside it a ball that rolls on for ever.
+    let mut defs = pyramid(6);
+    let mut ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.5 })).at(Vec3::new(-20.0, 0.5, 0.0));
+    ball.velocity = Vec3::new(0.0, 0.0, 3.0);
+    ball.angular_velocity = Vec3::new(6.0, 0.0, 0.0);
+    defs.push(ball);
+    let mut world = world_of(&defs);
+    run(&mut world, 200);
+    let full = world.environment.settings.rest_frames();
+    assert!(world.states()[1].rest > full && world.states()[defs.len() - 1].rest == 0);
+    let before = COUNT.get();
+    run(&mut world, 50);
+    assert_eq!(COUNT.get() - before, 0);
 }
 
 #[test]

@@ -23,6 +23,23 @@ fn thread_counts_agree() {
 }
 
 #[test]
+fn threads_that_share_one_island_agree() {
+    // So many contacts that even four threads share the sweeps of one island, some of them while it is hit.
+    let mut defs = pyramid(100);
+    let mut ball = cuboid(Vec3::splat(0.5), Vec3::new(0.3, 20.0, 2.0));
+    ball.velocity = Vec3::new(0.0, 0.0, -30.0);
+    defs.push(ball);
+    let mut reference = None;
+    for threads in [1, 2, 4] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
+        let mut world = world_of(&defs);
+        pool.install(|| run(&mut world, 8));
+        let hash = bits(&world);
+        assert!(*reference.get_or_insert_with(|| hash.clone()) == hash, "{threads} threads differ from 1");
+    }
+}
+
+#[test]
 fn an_island_does_not_notice_the_others() {
     // Two heaps far apart, together and alone.
     let (left, right) = (rain(60, 1), rain(60, 2));

@@ -62,7 +62,7 @@
 //! # Floors
 //!
 //! An import never points up: [`geometry`] (shapes, contact between two), [`dynamics`] (bodies, the step), [`timeline`] (states over
-//! frames, commands), [`scene`] (files, built-in scenes), and here the drivers, which alone know threads and a clock.
+//! frames, commands), [`scene`] (files, built-in scenes), and here the drivers, which alone start threads of their own and read a clock.
 
 mod driver;
 mod playback;

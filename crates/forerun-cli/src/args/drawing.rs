@@ -87,7 +87,7 @@ fn time(text: &str) -> Result<f64, String> {
 /// `forerun view`.
 #[derive(Debug, Default, Args)]
 pub(crate) struct ViewArgs {
-    #[arg(help = SCENE_HELP)]
+    #[arg(help = format!("{SCENE_HELP} [default: dominoes]"))]
     pub(crate) scene: Option<String>,
     /// Width and height of the window; without it the window is as large as the screen
     #[arg(long, value_name = "WxH", value_parser = size)]

@@ -215,10 +215,9 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
         print("  no edit changed anything: this shows little; try more --edits, or another --seed")?;
     } else {
         print(&format!(
-            "  an edit took {:.4} of the time of a full re-simulation of the same frames (median: {:.1} times cheaper; the dearest {:.2})",
-            1.0 / verdict.speed_up_median.max(1e-9),
-            verdict.speed_up_median,
-            1.0 / verdict.speed_up_min.max(1e-9)
+            "  in the median an edit is {} than a full re-simulation of the same frames; the dearest is {}",
+            cheaper(verdict.speed_up_median),
+            cheaper(verdict.speed_up_min)
         ))?;
     }
     for (what, ms) in [("edit", edit_ms), ("full re-simulation", full_ms)] {
@@ -228,4 +227,13 @@ fn print_verdict(verdict: &Verdict) -> Result<(), Failure> {
         ))?;
     }
     Ok(())
+}
+
+/// How much cheaper what takes `speed_up` times less time is.
+fn cheaper(speed_up: f64) -> String {
+    if speed_up >= 1.0 {
+        format!("{speed_up:.1} times cheaper")
+    } else {
+        format!("{:.1} times dearer", 1.0 / speed_up.max(1e-9))
+    }
 }

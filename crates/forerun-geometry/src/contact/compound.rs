@@ -47,9 +47,17 @@ fn parts_of(
 
 /// Whether the balls around two parts come within the margin. The balls of half-spaces are endless.
 fn may_touch(first: &Placed, second: &Placed, margin: f32) -> bool {
-    let reach = first.shape.radius_about(Vec3::ZERO) + second.shape.radius_about(Vec3::ZERO) + margin;
-    let arm = second.pose.position - first.pose.position;
-    arm.length_squared() <= reach * reach
+    let ((at, radius), (other_at, other_radius)) = (ball(first), ball(second));
+    let reach = radius + other_radius + margin;
+    at.distance_squared(other_at) <= reach * reach
+}
+
+/// A ball around a part: its middle in the world, and its radius. Metres.
+fn ball(part: &Placed) -> (Vec3, f32) {
+    match part.shape {
+        Shape::Mesh(mesh) => (part.pose.transform_point(mesh.ball().centre), mesh.ball().radius),
+        shape => (part.pose.position, shape.radius_about(Vec3::ZERO)),
+    }
 }
 
 /// Merges the manifolds from `start` on: each joins the first before it with which its normal agrees.

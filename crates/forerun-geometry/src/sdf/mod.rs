@@ -47,8 +47,6 @@ pub struct MeshCollider {
     pub samples: Samples,
     /// Edges that are long against the thickness of the mesh.
     pub(crate) ridges: Ridges,
-    /// Distance from the origin to the farthest vertex. Metres.
-    pub radius: f32,
     /// Of what is inside, where the triangles do not say it.
     pub(crate) moments: Option<Moments>,
     /// Where the field blurs sharp edges.
@@ -80,7 +78,6 @@ impl MeshCollider {
         }
         let samples = Samples::new(points);
         let ridges = long_ridges(mesh, &edges);
-        let radius = mesh.vertices.iter().fold(0.0_f32, |r, v| r.max(v.length()));
         let blur = match &field {
             // The triangles of a mended mesh do not tell its sides.
             Some(field) if mesh.enclosure != Enclosure::Mended => {
@@ -88,7 +85,7 @@ impl MeshCollider {
             }
             _ => Blur::default(),
         };
-        MeshCollider { field, samples, ridges, radius, moments, blur, normals }
+        MeshCollider { field, samples, ridges, moments, blur, normals }
     }
 
     /// Memory that it takes.

@@ -5,7 +5,7 @@ use super::mesh_report::{Enclosure, MeshError, MeshRepairs};
 use super::reach::Reach;
 use super::triangle_tree::TriangleTree;
 use crate::sdf::MeshCollider;
-use crate::{Aabb, Pose, Vec3};
+use crate::{Aabb, BoundingSphere, Pose, Vec3};
 
 /// A triangle mesh. Fields are public to read; make one with [`Mesh::new`], [`Mesh::open`] or a [`MeshDraft`].
 ///
@@ -82,6 +82,12 @@ impl Mesh {
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// A ball around the vertices, in the mesh's frame; kept, unlike [`Shape::bounding_sphere`](crate::Shape::bounding_sphere), which is smaller for some.
+    #[must_use]
+    pub fn ball(&self) -> BoundingSphere {
+        self.reach.ball()
     }
 
     /// The corners of a triangle. Metres.

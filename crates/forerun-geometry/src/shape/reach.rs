@@ -1,7 +1,7 @@
 //! Reach: how far a set of points extends in 26 directions, from which a box around it at any rotation follows without looking at the
 //! points again.
 
-use crate::{Aabb, Pose, Vec3};
+use crate::{Aabb, BoundingSphere, Pose, Vec3};
 
 /// Farthest extent of points from a centre along every direction with components -1, 0 and 1, and in general.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +41,11 @@ impl Reach {
             sum += (size[axis] - next) * self.along[direction];
         }
         sum.min(self.radius)
+    }
+
+    /// A ball around the points: its middle is that of their box.
+    pub(super) fn ball(&self) -> BoundingSphere {
+        BoundingSphere { centre: self.centre, radius: self.radius }
     }
 
     /// A box around the points at `pose`; the smallest one where the pose does not turn them.

@@ -163,17 +163,18 @@ pub(super) fn between<'a>(
     let axes = [first.pose.axes(), second.pose.axes()];
     let there = direction([first, second], axes, (Way::There, margin), memory);
     if let (Some(there), Shape::Mesh(first), Shape::Mesh(second)) = (&there, first.shape, second.shape)
-        && is_beyond(there.origin, first, second, margin)
+        && is_beyond(&there, first, second, margin)
     {
         return [None, None];
     }
     [there, direction([second, first], [axes[1], axes[0]], (Way::Back, margin), memory)]
 }
 
-/// Whether the ball around a mesh that is at `place` in the frame of another is farther than `margin` from the other's box. Metres.
-fn is_beyond(place: Vec3, ball: &Mesh, other: &Mesh, margin: f32) -> bool {
-    let bounds = other.bounds();
-    let reach = ball.collider().radius + margin;
+/// Whether the ball around the mesh whose points are looked up is farther than `margin` from the other's box. Metres.
+fn is_beyond(there: &Direction, sampled: &Mesh, other: &Mesh, margin: f32) -> bool {
+    let (ball, bounds) = (sampled.ball(), other.bounds());
+    let place = there.axes * ball.centre + there.origin;
+    let reach = ball.radius + margin;
     let offset = (bounds.min - place).max(place - bounds.max).max(Vec3::ZERO);
     // A little more, for what rounding may lose.
     offset.length_squared() > reach * reach * 1.0001
@@ -249,7 +250,7 @@ fn primitive_surface<'a>(shape: &Shape, planes: &'a [(Vec3, f32)]) -> Option<Sur
 /// See [`Direction::bend`]: half of one over the radius of the bends that matter, for each of two meshes taken to be its own. Beside what is flat or convex
 /// tangents tell the truth, but for turns.
 fn bend(sampled: &Shape, field: &Shape) -> f32 {
-    let of = |mesh: &Mesh| 0.5 / mesh.collider().radius;
+    let of = |mesh: &Mesh| 0.5 / mesh.ball().radius;
     match (sampled, field) {
         (Shape::Mesh(sampled), Shape::Mesh(field)) => of(sampled) + of(field),
         _ => 0.0,
@@ -258,7 +259,7 @@ fn bend(sampled: &Shape, field: &Shape) -> f32 {
 
 /// The ball around a mesh, grown by `margin`, in the frame of the primitive.
 fn region_of(mesh: &Mesh, to_primitive: &Pose, margin: f32) -> Region {
-    let radius = mesh.collider().radius;
-    let spacing = if mesh.has_inside() { 2.0 * mesh.half_thickness() } else { radius };
-    Region { centre: to_primitive.position, radius: radius + margin, spacing }
+    let ball = mesh.ball();
+    let spacing = if mesh.has_inside() { 2.0 * mesh.half_thickness() } else { ball.radius };
+    Region { centre: to_primitive.transform_point(ball.centre), radius: ball.radius + margin, spacing }
 }
