@@ -7,7 +7,7 @@ use super::Mesh;
 use crate::Aabb;
 
 /// How many lines thickness and gaps are measured along, at most.
-const PROBES: usize = 1024;
+const PROBES: u32 = 1024;
 /// The part of the surface where it is thinnest, or nearest to another part, that does not count: sharp edges are thin without end.
 const NARROW_PARTS: f64 = 0.05;
 /// Half a thickness below this part of half the longest side of the mesh is not told from none.
@@ -94,13 +94,11 @@ impl Mesh {
 
     /// The length below which only a twentieth of the surface lies. `length` tells it at the middle of a triangle with its outward unit normal.
     fn narrow(&self, length: impl Fn(DVec3, DVec3) -> f64) -> f64 {
-        let stride = self.triangles.len().div_ceil(PROBES);
         let mut probes: Vec<(f64, f64)> = Vec::new();
-        for triangle in (0..self.triangles.len()).step_by(stride) {
-            let outward = self.face_vector(triangle as u32);
-            let [a, b, c] = self.corners(triangle).map(|v| v.as_dvec3());
-            if let Some(unit) = outward.try_normalize() {
-                probes.push((length((a + b + c) / 3.0, unit), outward.length()));
+        for (triangle, area) in self.probed() {
+            let [a, b, c] = self.corners(triangle as usize).map(|v| v.as_dvec3());
+            if let Some(unit) = self.face_vector(triangle).try_normalize() {
+                probes.push((length((a + b + c) / 3.0, unit), area));
             }
         }
         probes.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -113,6 +111,21 @@ impl Mesh {
             }
         }
         f64::INFINITY
+    }
+
+    /// Triangles to measure at, and areas that they stand for, in whatever unit: all of them if they are few, else one for each of some equal parts
+    /// of the surface.
+    fn probed(&self) -> Vec<(u32, f64)> {
+        let all = self.triangles.len() as u32;
+        if all <= PROBES {
+            return (0..all).map(|t| (t, self.face_vector(t).length())).collect();
+        }
+        let mut probed: Vec<(u32, f64)> = Vec::new();
+        self.each_part(PROBES, |_, t| match probed.last_mut() {
+            Some((last, parts)) if *last == t => *parts += 1.0,
+            _ => probed.push((t, 1.0)),
+        });
+        probed
     }
 }
 
@@ -163,7 +176,7 @@ fn triangle_hit(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Optio
 
 #[cfg(test)]
 mod tests {
-    use super::super::mesh_make;
+    use super::super::{Mesh, mesh_make};
     use crate::Vec3;
     use glam::DVec3;
     use std::cell::Cell;
@@ -195,6 +208,25 @@ mod tests {
         about(mesh_make::cuboid(Vec3::new(0.1, 2.0, 0.1)).unwrap().half_thickness(), 0.1);
         about(mesh_make::frame(Vec3::new(0.5, 0.06, 0.5), 0.08).unwrap().half_thickness(), 0.04);
         about(mesh_make::ring(1.0, 0.9, 0.5, 64).unwrap().half_thickness(), 0.05);
+    }
+
+    #[test]
+    fn a_few_large_triangles_among_many_small_ones_count_by_their_area() {
+        let plate = mesh_make::cuboid(Vec3::new(0.5, 0.01, 0.5)).unwrap();
+        let ball = mesh_make::ball(0.3, 16).unwrap();
+        let first = ball.vertices.len() as u32;
+        let vertices: Vec<Vec3> =
+            ball.vertices.iter().copied().chain(plate.vertices.iter().map(|v| *v + Vec3::Y)).collect();
+        let triangles: Vec<[u32; 3]> =
+            ball.triangles.iter().copied().chain(plate.triangles.iter().map(|t| t.map(|i| i + first))).collect();
+        // Wherever in the list they stand.
+        for shift in 0..6 {
+            let mut triangles = triangles.clone();
+            triangles.rotate_left(shift);
+            let mesh = Mesh::assemble(vertices.clone(), triangles);
+            let found = mesh.measure_half_thickness();
+            assert!((found / 0.01 - 1.0).abs() < 0.01, "{found} m, rotated by {shift}");
+        }
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod measure;
 mod mesh;
 mod mesh_draft;
 pub mod mesh_make;
+mod mesh_parts;
 mod mesh_ray;
 mod mesh_report;
 mod mesh_topology;
