@@ -12,7 +12,7 @@ pub(crate) mod bake;
 mod bake_blocks;
 mod blocks;
 pub(crate) mod blur;
-mod crossing;
+pub(crate) mod crossing;
 pub(crate) mod eight;
 pub(crate) mod facets;
 mod field;

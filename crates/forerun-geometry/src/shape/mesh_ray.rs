@@ -5,6 +5,7 @@ use robust::{Coord3D, orient3d};
 
 use super::Mesh;
 use crate::Aabb;
+use crate::sdf::crossing::touching;
 
 /// How many lines thickness and gaps are measured along, at most.
 const PROBES: u32 = 1024;
@@ -85,10 +86,14 @@ impl Mesh {
     }
 
     /// Half the width of the narrowest gaps between parts of the surface that face each other: grooves of a thread, slits, holes. Measured from
-    /// the middles of triangles straight out, but for the narrowest twentieth of the surface; infinite where less of it faces anything. Metres.
+    /// the middles of triangles straight out, but for the narrowest twentieth of the surface; infinite where less of it faces anything. What
+    /// touches leaves no gap. Metres.
     pub(crate) fn measure_half_gap(&self) -> f32 {
-        let gap =
-            self.narrow(|middle, outward| self.first_hits(middle, outward, |first| first.front.t).front.t);
+        let touching = touching(self);
+        let gap = self.narrow(|middle, outward| {
+            let width = self.first_hits(middle, outward, |first| first.front.t).front.t;
+            if width > touching { width } else { f64::INFINITY }
+        });
         (0.5 * gap) as f32
     }
 
@@ -217,8 +222,12 @@ mod tests {
         let first = ball.vertices.len() as u32;
         let vertices: Vec<Vec3> =
             ball.vertices.iter().copied().chain(plate.vertices.iter().map(|v| *v + Vec3::Y)).collect();
-        let triangles: Vec<[u32; 3]> =
-            ball.triangles.iter().copied().chain(plate.triangles.iter().map(|t| t.map(|i| i + first))).collect();
+        let triangles: Vec<[u32; 3]> = ball
+            .triangles
+            .iter()
+            .copied()
+            .chain(plate.triangles.iter().map(|t| t.map(|i| i + first)))
+            .collect();
         // Wherever in the list they stand.
         for shift in 0..6 {
             let mut triangles = triangles.clone();
@@ -236,7 +245,12 @@ mod tests {
         // Across the hole; a round one is wider where it is measured from the middle of a facet.
         about(mesh_make::frame(Vec3::new(0.5, 0.3, 0.5), 0.4).unwrap().measure_half_gap(), 0.1);
         about(mesh_make::ring(1.0, 0.2, 0.5, 128).unwrap().measure_half_gap(), 0.2);
-        assert!(mesh_make::cuboid(Vec3::ONE).unwrap().measure_half_gap().is_infinite());
+        let cube = mesh_make::cuboid(Vec3::ONE).unwrap();
+        assert!(cube.measure_half_gap().is_infinite());
+        // Two that touch with a whole face.
+        let vertices = cube.vertices.iter().copied().chain(cube.vertices.iter().map(|v| *v + 2.0 * Vec3::X));
+        let triangles = cube.triangles.iter().copied().chain(cube.triangles.iter().map(|t| t.map(|i| i + 8)));
+        assert!(Mesh::assemble(vertices.collect(), triangles.collect()).measure_half_gap().is_infinite());
         // The groove of a thread: at most the pitch less its crest, at least the root.
         let thread = mesh_make::Thread { radius: 0.24, pitch: 0.08 };
         let (head, outside) = (mesh_make::Grip::Round, mesh_make::Grip::Round);
