@@ -10,7 +10,7 @@ use super::mesh_topology::{
 };
 use crate::Vec3;
 use crate::sdf::MeshCollider;
-use crate::sdf::bake::{Bounding, Grid, bake};
+use crate::sdf::bake::{Bounding, Grid, bake, suitable_cell};
 use crate::sdf::kept::{BakeKey, Found, Kept, KeptError};
 use crate::sdf::mend::{Covers, Verdict, survey};
 use crate::sdf::nearest::Skin;
@@ -173,7 +173,7 @@ impl MeshDraft {
         progress: BakeProgress<'_>,
     ) -> Result<Option<Field>, MeshError> {
         mesh.half_thickness = mesh.measure_half_thickness();
-        let wished = self.options.cell;
+        let wished = self.options.cell.unwrap_or_else(|| suitable_cell(mesh));
         let cell = Grid::around(mesh, wished).cell();
         match survey(mesh, &self.shells, &self.covers, cell.into()) {
             Verdict::Sound => {
