@@ -113,7 +113,9 @@ fn sharp_edges(mesh: &Mesh, normals: &PseudoNormals) -> Vec<[Vec3; 2]> {
 fn touchable_edges(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Ridge> {
     let (_, facing_max) = facing_max(mesh, normals);
     (0..normals.edges.len())
-        .filter(|e| matches!(normals.edge_kinds[*e], EdgeKind::Ridge | EdgeKind::Boundary))
+        .filter(|e| {
+            matches!(normals.edge_kinds[*e], EdgeKind::Ridge | EdgeKind::Boundary | EdgeKind::Crowded)
+        })
         .map(|e| Ridge {
             ends: normals.edges[e].map(|v| mesh.vertices[v as usize]),
             normal: normals.edge_normals[e],

@@ -89,6 +89,9 @@ impl<'a> Skin<'a> {
         let sign = if offset.dot(normal) < 0.0 { -1.0 } else { 1.0 };
         // On the surface itself the offset is rounding; the normal is what it stands for.
         let gradient = if length > ON_SURFACE { offset * (sign / length) } else { normal };
+        // Where parts touch that lie opposite to each other normals cancel out.
+        let gradient =
+            if gradient == DVec3::ZERO { face_normal(self.mesh, nearest.triangle) } else { gradient };
         Signed { distance: sign * length, gradient: gradient.as_vec3(), on_boundary }
     }
 

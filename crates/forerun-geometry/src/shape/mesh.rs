@@ -10,7 +10,7 @@ use crate::{Aabb, Pose, Vec3};
 /// A triangle mesh. Fields are public to read; make one with [`Mesh::new`], [`Mesh::open`] or a [`MeshDraft`].
 ///
 /// *Invariant:* vertices are finite, different from each other and each used by a triangle; the three corners of a triangle differ;
-/// of a closed mesh every edge belongs to exactly two triangles that pass it in opposite directions, and normals point outwards.
+/// of a closed mesh as many triangles pass an edge one way as the other, mostly one each, and normals point outwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Vertices. Metres.
