@@ -18,6 +18,8 @@ use document::{Document, Node, Primitive, Versioned};
 
 /// Most vertices and triangles, all copies of a mesh counted.
 const LARGEST_LIST: usize = 1 << 24;
+/// Most vertices and corners that are read, those included that make no triangle, and again for each copy.
+const MOST_READ: usize = 4 * LARGEST_LIST;
 /// Most parts of meshes, all copies counted.
 const MOST_PRIMITIVES: usize = 1 << 20;
 /// What keeps triangles in a form that only its own decoder reads.
@@ -66,6 +68,7 @@ pub fn parse_gltf(bytes: &[u8], beside: ReadBeside<'_>) -> Result<TriangleList, 
         data: Data { document: &document, buffers: &buffers },
         list: TriangleList::default(),
         primitives: 0,
+        read: 0,
     };
     reader.read_scene()?;
     if reader.list.triangles.is_empty() {
@@ -132,6 +135,8 @@ struct Reader<'a> {
     list: TriangleList,
     /// Parts of meshes so far, all copies counted.
     primitives: usize,
+    /// Vertices and corners so far, of all copies.
+    read: usize,
 }
 
 impl Reader<'_> {
@@ -190,6 +195,12 @@ impl Reader<'_> {
             Some(indices) => self.data.indices(indices)?,
             None => (0..positions.len() as u32).collect(),
         };
+        self.read += positions.len() + corners.len();
+        if self.read > MOST_READ {
+            return Err(fail(format!(
+                "the scene has more than {MOST_READ} vertices and corners with all its copies; simplify it"
+            )));
+        }
         if let Some(index) = corners.iter().find(|i| **i as usize >= positions.len()) {
             return Err(fail(format!("vertex {index} does not exist; there are {}", positions.len())));
         }
