@@ -91,6 +91,12 @@ impl MeshCollider {
         MeshCollider { field, samples, ridges, radius, moments, blur, normals }
     }
 
+    /// Cells of the field around sharp edges whose triangles are too many to be asked: there contact goes by the field, which rounds edges off.
+    #[must_use]
+    pub fn crowded_cells(&self) -> usize {
+        self.blur.crowded
+    }
+
     /// Memory that it takes.
     #[must_use]
     pub fn bytes(&self) -> usize {

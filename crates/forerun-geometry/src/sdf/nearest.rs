@@ -118,19 +118,20 @@ pub(crate) fn nearest(mesh: &Mesh, point: DVec3, guess: Option<&Nearest>) -> Nea
     best
 }
 
-/// The triangles no farther from a point than a limit (metres), in the order of their numbers.
-pub(crate) fn near_triangles(mesh: &Mesh, point: DVec3, limit: f64) -> Vec<u32> {
+/// The triangles no farther from a point than a limit (metres), in the order of their numbers; none if they are more than `most`.
+pub(crate) fn near_triangles(mesh: &Mesh, point: DVec3, limit: f64, most: usize) -> Option<Vec<u32>> {
     let mut found = Vec::new();
     let distance = |bounds: &Aabb| Some(distance_squared(bounds, point));
     let visit = |triangle: u32| {
         if triangle_distance(mesh, triangle, point) <= limit {
             found.push(triangle);
         }
-        limit * limit
+        // Nothing more is near enough once they are too many.
+        if found.len() > most { -1.0 } else { limit * limit }
     };
     mesh.tree().walk(distance, visit, limit * limit);
     found.sort_unstable();
-    found
+    (found.len() <= most).then_some(found)
 }
 
 /// How far a triangle is from a point. Metres.
