@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::roots::Roots;
 use super::{Mesh, MeshError};
 use crate::Vec3;
 use crate::sdf::mend::Covers;
@@ -220,33 +221,38 @@ pub(super) fn covers(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Covers {
         rims.extend((up..down).map(|_| [low, high]));
     }
     // Rims that share a vertex are of one hole: it is named by a vertex.
-    let mut hole: Vec<u32> = (0..vertices.len() as u32).collect();
-    let find = |hole: &[u32], mut v: u32| {
-        while hole[v as usize] != v {
-            v = hole[v as usize];
-        }
-        v
-    };
+    let mut holes = Roots::new(vertices.len());
     for [a, b] in &rims {
-        let (a, b) = (find(&hole, *a), find(&hole, *b));
-        // The lower name: rims come sorted, so that chains stay short.
-        hole[a.max(b) as usize] = a.min(b);
+        holes.join(*a, *b);
     }
     let mut middles: BTreeMap<u32, (DVec3, f64, u32)> = BTreeMap::new();
     for rim in &rims {
         let [a, b] = rim.map(|v| vertices[v as usize].as_dvec3());
         let next = vertices.len() as u32 + middles.len() as u32;
-        let middle = middles.entry(find(&hole, rim[0])).or_insert((DVec3::ZERO, 0.0, next));
+        let middle = middles.entry(holes.root(rim[0])).or_insert((DVec3::ZERO, 0.0, next));
         let length = a.distance(b);
         middle.0 += (a + b) * (0.5 * length);
         middle.1 += length;
     }
-    let triangles = rims.iter().map(|[a, b]| [*a, *b, middles[&find(&hole, *a)].2]).collect();
+    let triangles = rims.iter().map(|[a, b]| [*a, *b, middles[&holes.root(*a)].2]).collect();
     let mut apexes = vec![Vec3::ZERO; middles.len()];
     for (sum, length, index) in middles.values() {
         apexes[*index as usize - vertices.len()] = (sum / length).as_vec3();
     }
     Covers { apexes, triangles }
+}
+
+impl Mesh {
+    /// How many parts of the surface do not hang together, not even by a vertex.
+    #[must_use]
+    pub fn shells(&self) -> usize {
+        let mut parts = Roots::new(self.vertices.len());
+        let mut joined = 0;
+        for [a, b, c] in &self.triangles {
+            joined += usize::from(parts.join(*a, *b)) + usize::from(parts.join(*a, *c));
+        }
+        self.vertices.len() - joined
+    }
 }
 
 /// Number of edges of more than two triangles, and the vertices of the first.

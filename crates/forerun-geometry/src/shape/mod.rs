@@ -19,6 +19,7 @@ mod mesh_ray;
 mod mesh_report;
 mod mesh_topology;
 mod reach;
+mod roots;
 mod triangle_list;
 mod triangle_tree;
 
