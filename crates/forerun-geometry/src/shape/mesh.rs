@@ -41,7 +41,8 @@ impl Mesh {
         MeshDraft::new(vertices, triangles, MeshOptions::default())?.bake(&|_, _| {})
     }
 
-    /// A mesh that need not have an inside: for fixed bodies, like terrain. It is closed all the same when its edges say so.
+    /// A mesh that need not have an inside: for fixed bodies, like terrain. It is closed all the same when its edges say so, unless it faces
+    /// inwards: a room stays one.
     ///
     /// # Errors
     /// When there is no triangle, a number is not finite, or an index is out of range.
