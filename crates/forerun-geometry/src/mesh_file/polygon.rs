@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::Vec3;
+use crate::sdf::triangle::{corners_of, face_vector};
 
 /// Corners of the largest polygon that is cut ear by ear: that takes time with the third power of their number.
 const CORNERS_MAX: usize = 512;
@@ -24,10 +25,7 @@ pub(super) fn cut_polygon(vertices: &[Vec3], corners: &[u32]) -> Result<Vec<[u32
     if corners.len() == 3 {
         return Ok(fan(0).collect());
     }
-    let area = |triangle: [u32; 3]| {
-        let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3());
-        (b - a).cross(c - a)
-    };
+    let area = |triangle| face_vector(corners_of(vertices, triangle));
     let whole: DVec3 = fan(0).map(area).sum();
     // A face of no area at all faces no way: any fan will do.
     let tried = (SEARCH_MAX / corners.len()).clamp(1, corners.len());

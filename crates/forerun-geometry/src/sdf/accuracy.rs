@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Field;
 use super::kept::Reader;
-use super::pseudo_normals::corners;
+use super::triangle::corners;
 use crate::shape::Mesh;
 
 /// Points of the surface that are asked, about.

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::pseudo_normals::corners;
+use super::triangle::corners;
 use crate::Aabb;
 use crate::shape::Mesh;
 

@@ -6,14 +6,13 @@
 use forerun_lanes::{LANES, LaneMask, Lanes, Row, V8};
 
 use super::nearest::{Feature, Skin};
-use super::pseudo_normals::{EdgeKind, corners};
+use super::pseudo_normals::EdgeKind;
+use super::triangle::{ON_SURFACE, corners};
 use crate::Vec3;
 use crate::shape::Mesh;
 
 /// Rows that a triangle takes.
 pub(super) const ROWS: u32 = 2;
-/// Points this near to the surface are on it: poses are no better known. Metres.
-const ON_SURFACE: f32 = 1e-5;
 
 /// The triangles of a mesh, each in a frame of its own: the first corner is the origin, the first edge the first axis,
 /// and the normal the third.

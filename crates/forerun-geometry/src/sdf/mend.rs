@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::crossing::has_crossings;
 use super::kept::Found;
-use super::pseudo_normals::corners;
+use super::triangle::{area, corners, face_vector};
 use super::winding::winding;
 use crate::Vec3;
 use crate::shape::Mesh;
@@ -208,7 +208,7 @@ impl Walls<'_> {
     /// How often what is in front of a piece of a wall is gone round, and what is behind it; none for a piece without area.
     fn counts(&self, piece: [DVec3; 3]) -> Option<(i32, i32)> {
         let [a, b, c] = piece;
-        let vector = (b - a).cross(c - a);
+        let vector = face_vector(piece);
         let normal = vector.try_normalize()?;
         let around = a.distance(b) + b.distance(c) + c.distance(a);
         // The radius of the circle inside is twice the area over the length around.
@@ -217,10 +217,6 @@ impl Walls<'_> {
         let count = |p: DVec3| winding(self.covered, p);
         Some((count(middle + normal * beside), count(middle - normal * beside)))
     }
-}
-
-fn area([a, b, c]: [DVec3; 3]) -> f64 {
-    0.5 * (b - a).cross(c - a).length()
 }
 
 /// Calls `visit` with pieces of a triangle whose edges are no longer than `size`, by cutting the longest in half again and again.

@@ -25,6 +25,7 @@ pub(crate) mod primitive;
 pub(crate) mod pseudo_normals;
 pub(crate) mod ridges;
 pub(crate) mod samples;
+pub(crate) mod triangle;
 pub(crate) mod winding;
 
 pub use accuracy::{FieldError, Spread};
@@ -174,7 +175,7 @@ fn least_cosines(mesh: &Mesh, normals: &PseudoNormals) -> (Vec<f32>, Vec<f32>) {
     let (mut at_vertices, mut at_edges) =
         (vec![1.0_f32; mesh.vertices.len()], vec![1.0_f32; normals.edges.len()]);
     for (t, (corners, edges)) in mesh.triangles.iter().zip(&normals.triangle_edges).enumerate() {
-        let normal = pseudo_normals::face_normal(mesh, t).as_vec3();
+        let normal = triangle::face_normal(mesh, t).as_vec3();
         for v in corners.map(|v| v as usize) {
             at_vertices[v] = at_vertices[v].min(normals.vertex_normals[v].dot(normal));
         }

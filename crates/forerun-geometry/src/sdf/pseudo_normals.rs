@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::triangle::{corners, face_normal};
 use crate::Vec3;
 use crate::shape::Mesh;
 
@@ -77,22 +78,6 @@ impl PseudoNormals {
             + size_of_val(&*self.edge_kinds)
             + size_of_val(&*self.triangle_edges)
     }
-}
-
-/// The corners of a triangle of a mesh, in double precision.
-pub(crate) fn corners(mesh: &Mesh, triangle: usize) -> [DVec3; 3] {
-    let [a, b, c] = mesh.triangles[triangle];
-    [
-        mesh.vertices[a as usize].as_dvec3(),
-        mesh.vertices[b as usize].as_dvec3(),
-        mesh.vertices[c as usize].as_dvec3(),
-    ]
-}
-
-/// Unit normal of a triangle of a mesh.
-pub(crate) fn face_normal(mesh: &Mesh, triangle: usize) -> DVec3 {
-    let [a, b, c] = corners(mesh, triangle);
-    (b - a).cross(c - a).normalize()
 }
 
 fn edges_of(c: [u32; 3]) -> [[u32; 2]; 3] {

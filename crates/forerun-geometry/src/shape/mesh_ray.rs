@@ -6,6 +6,7 @@ use robust::{Coord3D, orient3d};
 use super::Mesh;
 use crate::Aabb;
 use crate::sdf::crossing::touching;
+use crate::sdf::triangle::{corners, face_vector};
 
 /// How many lines thickness and gaps are measured along, at most.
 const PROBES: u32 = 1024;
@@ -56,8 +57,8 @@ impl Mesh {
         self.tree().walk(
             |bounds| box_entry(bounds, origin, inverse),
             |triangle| {
-                let corners = self.corners(triangle as usize).map(|v| v.as_dvec3());
-                if let Some((t, side)) = triangle_hit(origin, direction, corners) {
+                let hit = corners(self, triangle as usize);
+                if let Some((t, side)) = triangle_hit(origin, direction, hit) {
                     let nearest = if side == Side::Front { &mut first.front } else { &mut first.back };
                     nearest.offer(t, triangle);
                 }
@@ -70,8 +71,7 @@ impl Mesh {
 
     /// Outward normal of a triangle, not of unit length.
     pub(crate) fn face_vector(&self, triangle: u32) -> DVec3 {
-        let [a, b, c] = self.corners(triangle as usize).map(|v| v.as_dvec3());
-        (b - a).cross(c - a)
+        face_vector(corners(self, triangle as usize))
     }
 
     /// Half the thickness below which only a twentieth of the surface lies, measured from the middles of triangles straight
@@ -101,7 +101,7 @@ impl Mesh {
     fn narrow(&self, length: impl Fn(DVec3, DVec3) -> f64) -> f64 {
         let mut probes: Vec<(f64, f64)> = Vec::new();
         for (triangle, area) in self.probed() {
-            let [a, b, c] = self.corners(triangle as usize).map(|v| v.as_dvec3());
+            let [a, b, c] = corners(self, triangle as usize);
             if let Some(unit) = self.face_vector(triangle).try_normalize() {
                 probes.push((length((a + b + c) / 3.0, unit), area));
             }
