@@ -47,12 +47,12 @@ impl Watch {
 }
 
 impl MeshWatch for Watch {
-    fn baking(&self, name: &str, done: usize, total: usize) {
+    fn baking(&self, name: &str, _done: usize, total: usize) {
         let mut bar = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
         let shown = bar.get_or_insert_with(|| progress::bar(total as u64, &format!("baking {name}")));
-        // The largest number may not be the last to come.
-        shown.set_position(shown.position().max(done as u64));
-        if done >= total {
+        // Each call is one more, and the largest number may not be the last to come.
+        shown.inc(1);
+        if shown.position() >= total as u64 {
             shown.finish_and_clear();
             *bar = None;
         }
@@ -69,5 +69,22 @@ impl MeshWatch for Watch {
             eprintln!("forerun: warning: mesh {warning}");
         }
         said.push(warning);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bar_goes_with_the_last_call_and_not_with_the_largest_number() {
+        let watch = Watch::new(Warnings::Kept);
+        let is_shown = || watch.bar.lock().expect("no panic").is_some();
+        for _ in 0..2 {
+            for done in [2, 4, 1, 3] {
+                watch.baking("thing", done, 4);
+                assert_eq!(is_shown(), done != 3, "after {done}");
+            }
+        }
     }
 }

@@ -3,6 +3,7 @@
 mod camera;
 mod canvas;
 mod raster;
+mod round;
 mod shade;
 mod shadow;
 mod slice;

@@ -1,8 +1,9 @@
 //! Meshes with the faults of every day: holes, flipped faces, shells that overlap, walls inside, sheets.
 #![allow(dead_code, reason = "each test uses some of the common meshes")]
 
+use forerun_geometry::contact::contact_manifolds;
 use forerun_geometry::shape::{Enclosure, Inside, Mesh, MeshDraft, MeshError, MeshOptions};
-use forerun_geometry::{Ray, Shape, Vec3};
+use forerun_geometry::{Motion, Placed, Pose, Ray, Shape, Vec3};
 
 #[path = "common/meshes.rs"]
 mod meshes;
@@ -144,6 +145,51 @@ fn a_shell_within_a_shell_and_shells_that_touch_make_no_walls() {
     let touching = mesh(&and(small.clone(), &small, Vec3::X * 0.4));
     assert!((distance(&touching, Vec3::X * 0.2) + 0.2).abs() < 0.02);
     assert!((mass(touching) - 0.128).abs() < 0.001);
+}
+
+#[test]
+fn cubes_that_share_an_edge_are_closed_and_touched_as_two() {
+    let (cube, offset) = (meshes::cuboid(Vec3::splat(0.2)), Vec3::new(0.4, 0.4, 0.0));
+    let mesh = mesh(&and(cube.clone(), &cube, offset));
+    assert_eq!((mesh.enclosure, mesh.repairs.crowded_edges), (Enclosure::Closed, 1));
+    let cuboid = |p: Vec3| {
+        let q = p.abs() - Vec3::splat(0.2);
+        q.max(Vec3::ZERO).length() + q.max_element().min(0.0)
+    };
+    compare(&mesh, |p| cuboid(p).min(cuboid(p - offset)), 0.5);
+    assert!((mass(mesh.clone()) - 0.128).abs() < 1e-5);
+    // A small one in the corner between them: 3 mm into the top of one, 4 mm into the side of the other.
+    let small = Shape::from(self::mesh(&meshes::cuboid(Vec3::splat(0.03))));
+    let both = Shape::from(mesh);
+    let at = Vec3::new(0.2 - 0.03 + 0.004, 0.2 + 0.03 - 0.003, 0.05);
+    let mut manifolds = Vec::new();
+    let placed = |shape, position| Placed {
+        shape,
+        pose: Pose { position, ..Pose::IDENTITY },
+        motion: Motion::default(),
+    };
+    contact_manifolds(&placed(&both, Vec3::ZERO), &placed(&small, at), 0.001, &mut manifolds);
+    let mut deepest = [0.0_f32; 2];
+    for manifold in &manifolds {
+        for (axis, deepest) in deepest.iter_mut().enumerate() {
+            if manifold.normal[axis].abs() > 0.99 {
+                *deepest = deepest.min(manifold.deepest());
+            }
+        }
+    }
+    assert!((deepest[0] + 0.004).abs() < 5e-4 && (deepest[1] + 0.003).abs() < 5e-4, "{manifolds:?}");
+}
+
+#[test]
+fn shared_walls_of_cubes_are_inside_and_a_cube_that_is_there_twice_weighs_as_one() {
+    let cube = meshes::cuboid(Vec3::splat(0.2));
+    let joined = mesh(&and(cube.clone(), &cube, Vec3::X * 0.4));
+    assert_eq!((joined.enclosure, joined.repairs.inner_triangles), (Enclosure::Mended, 4));
+    for x in [0.19, 0.21] {
+        assert!(distance(&joined, Vec3::new(x, 0.1, 0.0)) < -0.09);
+    }
+    let twice = mesh(&and(cube.clone(), &cube, Vec3::ZERO));
+    assert!((mass(twice) - 0.064).abs() < 0.001);
 }
 
 #[test]

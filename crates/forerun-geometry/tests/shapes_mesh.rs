@@ -103,7 +103,17 @@ fn an_open_mesh_is_refused_by_the_place_of_its_hole() {
     let open = Mesh::open(vertices.clone(), triangles).unwrap();
     assert!(!open.has_inside() && open.half_thickness().is_infinite());
     // What is closed is closed, however it is asked for.
-    assert!(Mesh::open(vertices, cube().1).unwrap().has_inside());
+    assert!(Mesh::open(vertices.clone(), cube().1).unwrap().has_inside());
+    // A room faces inwards, with or without something in it: its walls stay as they are.
+    let inwards: Vec<[u32; 3]> = cube().1.into_iter().map(|[a, b, c]| [a, c, b]).collect();
+    let mut furnished = (vertices.clone(), inwards.clone());
+    furnished.0.extend(vertices.iter().map(|v| *v * 0.5));
+    furnished.1.extend(cube().1.into_iter().map(|t| t.map(|i| i + 8)));
+    for (vertices, triangles) in [(vertices.clone(), inwards.clone()), furnished] {
+        let room = Mesh::open(vertices, triangles.clone()).unwrap();
+        assert!(!room.has_inside() && room.triangles == triangles && room.repairs.is_none());
+    }
+    assert!(Mesh::new(vertices, inwards).unwrap().repairs.turned);
 }
 
 #[test]

@@ -11,7 +11,8 @@ use crate::MeshCache;
 
 /// Somebody who is told how baking goes.
 pub trait MeshWatch: fmt::Debug + Send + Sync {
-    /// Of the mesh of this name so much is baked, of so much in all. Called by several threads.
+    /// Of the mesh of this name so much is baked, of so much in all. Called by several threads, with each number from 1 to all of it once, but
+    /// not in order.
     fn baking(&self, name: &str, done: usize, total: usize);
 
     /// Something about a mesh that is no error.

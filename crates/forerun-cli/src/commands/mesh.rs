@@ -181,7 +181,7 @@ impl Made {
             triangles_given: given.1,
             vertices: mesh.vertices.len(),
             triangles: mesh.triangles.len(),
-            shells: shells(mesh),
+            shells: mesh.shells(),
             enclosure: match mesh.enclosure {
                 Enclosure::Closed => "closed",
                 Enclosure::Mended => "mended",
@@ -225,31 +225,14 @@ fn oddities(mesh: &Mesh, args: &MeshArgs) -> Vec<String> {
             field.cell()
         ));
     }
-    found
-}
-
-/// How many parts of the surface do not hang together.
-fn shells(mesh: &Mesh) -> usize {
-    let mut parent: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    let root = |parent: &mut Vec<u32>, mut v: u32| {
-        while parent[v as usize] != v {
-            // Halving the way keeps later ways short.
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
-    };
-    let mut shells = mesh.vertices.len();
-    for [a, b, c] in &mesh.triangles {
-        for other in [b, c] {
-            let (a, b) = (root(&mut parent, *a), root(&mut parent, *other));
-            if a != b {
-                parent[a.max(b) as usize] = a.min(b);
-                shells -= 1;
-            }
-        }
+    let crowded = mesh.collider().crowded_cells();
+    if crowded > 0 {
+        found.push(format!(
+            "{crowded} cells of the field at sharp edges have too many triangles to be asked: what touches there sees edges a little rounded; \
+             simplify the mesh"
+        ));
     }
-    shells
+    found
 }
 
 fn print_report(report: &MeshReport) -> Result<(), Failure> {

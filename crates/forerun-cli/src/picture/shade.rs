@@ -8,6 +8,7 @@ use forerun::{Aabb, Pose, Vec3};
 
 use super::canvas::Canvas;
 use super::raster::{Corner, clip, cover};
+use super::round::round_below;
 use super::shadow::Shadow;
 use super::{Camera, Facet, TO_SUN};
 
@@ -164,15 +165,7 @@ fn squares(view: &View<'_>, ground: &Ground, (point, ray): (Vec3, Vec3), depth: 
 
 /// An edge for squares that suits things of a size: 1, 2 or 5 times a power of ten, about an eighth.
 pub(crate) fn square_for(size: f32) -> f32 {
-    let wished = size.clamp(1e-4, 1e6) / 8.0;
-    let mut square = 1e-5;
-    for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(40) {
-        if square * factor > wished {
-            break;
-        }
-        square *= factor;
-    }
-    square
+    round_below(size.min(1e6) / 8.0) as f32
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use plotters::prelude::{BitMapBackend, IntoDrawingArea, IntoFont, Text};
 use plotters::style::Color;
 
 use super::canvas::Canvas;
+use super::round::round_above;
 use crate::charts::{AXIS_TEXT, FONT, embed_font};
 
 /// Pixels along the longest side of the mesh.
@@ -58,7 +59,7 @@ struct Scale {
     /// The largest distance in the picture. Metres.
     farthest: f32,
     /// From one line of equal distance to the next. Metres.
-    step: f32,
+    step: f64,
 }
 
 /// Draws the slices through `centre`.
@@ -69,7 +70,7 @@ pub(crate) fn draw_slices(mesh: &Mesh, centre: Vec3) -> Result<Canvas, String> {
     let field = mesh.collider().field.as_ref();
     let deepest = field.map_or(0.0, |field| deepest_of(field, mesh));
     let farthest = deepest.max(metres_per_pixel * ROOM as f32);
-    let scale = Scale { metres_per_pixel, farthest, step: round_step(farthest / LINES) };
+    let scale = Scale { metres_per_pixel, farthest, step: round_above(farthest / LINES) };
     let planes = Plane::through(centre);
     let panels: Vec<Canvas> = planes.iter().map(|plane| draw_panel(mesh, plane, &scale)).collect();
     let width = panels.iter().map(|panel| panel.width).sum::<u32>();
@@ -85,7 +86,7 @@ pub(crate) fn draw_slices(mesh: &Mesh, centre: Vec3) -> Result<Canvas, String> {
     let legend = match field {
         Some(field) => format!(
             "blue: inside, orange: outside; a line every {} m; black: zero of the field, yellow: the triangles; cells of {:.4e} m",
-            rounded(scale.step),
+            scale.step,
             field.cell()
         ),
         None => "no field: the mesh has no inside; yellow: the triangles".to_owned(),
@@ -106,24 +107,6 @@ fn deepest_of(field: &Field, mesh: &Mesh) -> f32 {
         deepest = deepest.max(-distance);
     }
     deepest
-}
-
-/// 1, 2 or 5 times a power of ten, not much above what is wished.
-fn round_step(wished: f32) -> f32 {
-    let mut step = 1e-6;
-    for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(40) {
-        if step >= wished {
-            break;
-        }
-        step *= factor;
-    }
-    step
-}
-
-/// Without the digits that sums of powers of ten leave behind.
-fn rounded(step: f32) -> f64 {
-    let digits = 10_f64.powi(7);
-    (f64::from(step) * digits).round() / digits
 }
 
 fn draw_panel(mesh: &Mesh, plane: &Plane, scale: &Scale) -> Canvas {
@@ -161,6 +144,7 @@ fn draw_panel(mesh: &Mesh, plane: &Plane, scale: &Scale) -> Canvas {
 fn draw_field(canvas: &mut Canvas, scale: &Scale, distance: impl Fn(u32, u32) -> f32) {
     let (width, height) = (canvas.width, canvas.height);
     let rows: Vec<Vec<f32>> = (0..height).map(|y| (0..width).map(|x| distance(x, y)).collect()).collect();
+    let lines_below = |distance: f32| (f64::from(distance) / scale.step).floor();
     for y in 0..height {
         for x in 0..width {
             let here = rows[y as usize][x as usize];
@@ -170,7 +154,7 @@ fn draw_field(canvas: &mut Canvas, scale: &Scale, distance: impl Fn(u32, u32) ->
             let (mut zero, mut line) = (false, false);
             for other in around {
                 zero |= (*other < 0.0) != (here < 0.0);
-                line |= (other / scale.step).floor() < (here / scale.step).floor();
+                line |= lines_below(*other) < lines_below(here);
             }
             let full = if here < 0.0 { INSIDE } else { OUTSIDE };
             let part = (here.abs() / scale.farthest).clamp(0.0, 1.0).sqrt();

@@ -18,17 +18,35 @@ use document::{Document, Node, Primitive, Versioned};
 
 /// Most vertices and triangles, all copies of a mesh counted.
 const LARGEST_LIST: usize = 1 << 24;
+/// Most vertices and corners that are read, those included that make no triangle, and again for each copy.
+const MOST_READ: usize = 4 * LARGEST_LIST;
 /// Most parts of meshes, all copies counted.
 const MOST_PRIMITIVES: usize = 1 << 20;
 /// What keeps triangles in a form that only its own decoder reads.
 const COMPRESSED: [&str; 3] =
     ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+/// What triangles and their places do not depend on, or what is read.
+const HARMLESS: [&str; 11] = [
+    "KHR_mesh_quantization",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+    "KHR_lights_punctual",
+    "KHR_animation_pointer",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "EXT_lights_image_based",
+    "EXT_texture_avif",
+    "EXT_texture_webp",
+    "MSFT_texture_dds",
+];
+/// How the names of kinds of materials begin, which are harmless too.
+const MATERIALS: [&str; 2] = ["KHR_materials_", "EXT_materials_"];
 
 /// The triangles of a glTF or GLB file. `beside` reads a file by its name relative to the glTF file, and says why it cannot.
 ///
 /// # Errors
 /// With the place in the document: JSON that is none, a buffer that is missing or too short, an index out of range, a position that is not
-/// finite, a node with two parents, compressed meshes, or no triangle at all.
+/// finite, a node with two parents, compressed meshes and other extensions that it cannot be read without, or no triangle at all.
 pub fn parse_gltf(bytes: &[u8], beside: ReadBeside<'_>) -> Result<TriangleList, ParseError> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { unpack(bytes)? } else { (bytes, None) };
     let document: Document = serde_json::from_slice(json).map_err(|error| {
@@ -50,6 +68,7 @@ pub fn parse_gltf(bytes: &[u8], beside: ReadBeside<'_>) -> Result<TriangleList, 
         data: Data { document: &document, buffers: &buffers },
         list: TriangleList::default(),
         primitives: 0,
+        read: 0,
     };
     reader.read_scene()?;
     if reader.list.triangles.is_empty() {
@@ -89,10 +108,17 @@ fn unpack(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> {
 
 fn check(document: &Document) -> Result<(), ParseError> {
     check_version(document.asset.as_ref().map_or("", |asset| asset.version.as_str()))?;
-    let compressed = document.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str()));
-    compressed.map_or(Ok(()), |name| {
-        let message = format!("{name} is not read; export the file without compression of meshes");
-        Err(ParseError::new("extensionsRequired", message))
+    let is_harmless =
+        |name: &str| HARMLESS.contains(&name) || MATERIALS.iter().any(|kind| name.starts_with(kind));
+    let unknown = document.extensions_required.iter().find(|name| !is_harmless(name));
+    unknown.map_or(Ok(()), |name| {
+        let what =
+            if COMPRESSED.contains(&name.as_str()) { "compression of meshes" } else { "this extension" };
+        let name: String = name.chars().take(48).flat_map(char::escape_debug).collect();
+        Err(ParseError::new(
+            "extensionsRequired",
+            format!("{name} is not read; export the file without {what}"),
+        ))
     })
 }
 
@@ -109,6 +135,8 @@ struct Reader<'a> {
     list: TriangleList,
     /// Parts of meshes so far, all copies counted.
     primitives: usize,
+    /// Vertices and corners so far, of all copies.
+    read: usize,
 }
 
 impl Reader<'_> {
@@ -167,6 +195,12 @@ impl Reader<'_> {
             Some(indices) => self.data.indices(indices)?,
             None => (0..positions.len() as u32).collect(),
         };
+        self.read += positions.len() + corners.len();
+        if self.read > MOST_READ {
+            return Err(fail(format!(
+                "the scene has more than {MOST_READ} vertices and corners with all its copies; simplify it"
+            )));
+        }
         if let Some(index) = corners.iter().find(|i| **i as usize >= positions.len()) {
             return Err(fail(format!("vertex {index} does not exist; there are {}", positions.len())));
         }

@@ -3,9 +3,14 @@
 use glam::{DVec2, DVec3};
 
 use crate::Vec3;
+use crate::sdf::triangle::{corners_of, face_vector};
 
 /// Corners of the largest polygon that is cut ear by ear: that takes time with the third power of their number.
 const CORNERS_MAX: usize = 512;
+
+/// Triangles that are looked at in search of the corner to begin a fan at, or those of one fan if they are more: all corners of polygons of 4096
+/// are tried.
+const SEARCH_MAX: usize = 1 << 24;
 
 /// The triangles of a polygon: a fan about the first corner from which all of them face the same way, else ear by ear. The corners are
 /// vertices that exist.
@@ -20,13 +25,11 @@ pub(super) fn cut_polygon(vertices: &[Vec3], corners: &[u32]) -> Result<Vec<[u32
     if corners.len() == 3 {
         return Ok(fan(0).collect());
     }
-    let area = |triangle: [u32; 3]| {
-        let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3());
-        (b - a).cross(c - a)
-    };
+    let area = |triangle| face_vector(corners_of(vertices, triangle));
     let whole: DVec3 = fan(0).map(area).sum();
     // A face of no area at all faces no way: any fan will do.
-    let best = (0..corners.len()).find(|&first| fan(first).all(|t| area(t).dot(whole) >= 0.0));
+    let tried = (SEARCH_MAX / corners.len()).clamp(1, corners.len());
+    let best = (0..tried).find(|&first| fan(first).all(|t| area(t).dot(whole) >= 0.0));
     if let Some(first) = best {
         return Ok(fan(first).collect());
     }
@@ -117,6 +120,22 @@ mod tests {
         let crossing: Vec<Vec3> = crossing.iter().map(|[x, y]| Vec3::new(*x, *y, 0.0)).collect();
         // Cut somehow or refused, but not for ever.
         let _ = cut_polygon(&crossing, &[0, 1, 2, 3, 4, 5, 6]);
+    }
+
+    #[test]
+    fn a_polygon_of_very_many_corners_takes_no_time_without_end() {
+        // A bar with many corners along its bottom, one of which may be high up: then that one alone sees all of it.
+        let bar = |count: u32, height: f32| {
+            let middle = count / 2;
+            let bottom =
+                (0..count - 2).map(|i| Vec3::new(i as f32, if i == middle { height } else { 0.0 }, 0.0));
+            let top = [Vec3::new((count - 3) as f32, 10.0, 0.0), Vec3::Y * 10.0];
+            let corners: Vec<u32> = (0..count).collect();
+            cut_polygon(&bottom.chain(top).collect::<Vec<_>>(), &corners)
+        };
+        assert_eq!(bar(1 << 20, 0.0).unwrap().len(), (1 << 20) - 2);
+        assert_eq!(bar(4096, 5.0).unwrap().len(), 4094);
+        assert!(bar(1 << 20, 5.0).unwrap_err().contains("triangulate the mesh"));
     }
 
     #[test]

@@ -4,11 +4,11 @@ use glam::DVec3;
 
 use super::Field;
 use super::kept::Reader;
-use super::pseudo_normals::corners;
+use super::triangle::corners;
 use crate::shape::Mesh;
 
 /// Points of the surface that are asked, about.
-const POINTS: usize = 4096;
+const POINTS: u32 = 4096;
 
 /// How far a field is off at points spread evenly over its surface: between its nodes it rounds edges off and cuts corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,30 +69,17 @@ impl FieldError {
 
 /// Calls `visit` with points that stand for equal areas each, and the normals there.
 fn each_point(surface: &Mesh, mut visit: impl FnMut(DVec3, DVec3)) {
-    let vector = |t: usize| {
-        let [a, b, c] = corners(surface, t);
-        (b - a).cross(c - a)
-    };
-    let total: f64 = (0..surface.triangles.len()).map(|t| vector(t).length()).sum();
-    let step = total / POINTS as f64;
-    // The first point stands in the middle of its area.
-    let (mut before, mut count) = (0.0, 0);
-    for t in 0..surface.triangles.len() {
-        let normal = vector(t);
-        before += normal.length();
-        while (f64::from(count) + 0.5) * step < before && (count as usize) < POINTS {
-            let [a, b, c] = corners(surface, t);
-            // Even in the plane: multiples of the powers of the plastic number's inverse (Roberts, *The Unreasonable Effectiveness of
-            // Quasirandom Sequences*, 2018).
-            let part = |factor: f64| (0.5 + factor * f64::from(count)).fract();
-            let (mut u, mut v) = (part(0.754_877_666_246_692_7), part(0.569_840_290_998_053_3));
-            if u + v > 1.0 {
-                (u, v) = (1.0 - u, 1.0 - v);
-            }
-            visit(a + (b - a) * u + (c - a) * v, normal.normalize());
-            count += 1;
+    surface.each_part(POINTS, |part, t| {
+        let [a, b, c] = corners(surface, t as usize);
+        // Even in the plane: multiples of the powers of the plastic number's inverse (Roberts, *The Unreasonable Effectiveness of
+        // Quasirandom Sequences*, 2018).
+        let along = |factor: f64| (0.5 + factor * f64::from(part)).fract();
+        let (mut u, mut v) = (along(0.754_877_666_246_692_7), along(0.569_840_290_998_053_3));
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
         }
-    }
+        visit(a + (b - a) * u + (c - a) * v, surface.face_vector(t).normalize());
+    });
 }
 
 #[cfg(test)]
@@ -113,7 +100,7 @@ mod tests {
         });
         // By area the faces across z, y and x are as 4 to 2 to 1.
         assert_eq!(count, POINTS);
-        assert!((f64::from(on_large) / POINTS as f64 - 4.0 / 7.0).abs() < 0.01, "{on_large}");
+        assert!((f64::from(on_large) / f64::from(POINTS) - 4.0 / 7.0).abs() < 0.01, "{on_large}");
     }
 
     #[test]

@@ -32,7 +32,7 @@ const FINER: f32 = 0.8;
 const EXACT_CELLS: f32 = 4.0;
 
 /// Told how much of the baking is done and how much there is in all, by the threads that do it: `done` is a different number
-/// each time, but a smaller one may come after a larger one.
+/// each time, from 1 to all there is, but a smaller one may come after a larger one.
 pub type BakeProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// What bounds the inside.
@@ -99,12 +99,12 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// A grid around a mesh, no larger than memory allows. `cell`: wished size; none for one that suits the thickness. Metres.
-    pub(crate) fn around(mesh: &Mesh, cell: Option<f32>) -> Grid {
+    /// A grid around a mesh, no larger than memory allows. `wished`: size of cells. Metres.
+    pub(crate) fn around(mesh: &Mesh, wished: f32) -> Grid {
         let bounds = mesh.bounds();
         let extent = bounds.max - bounds.min;
         // Nodes on all six sides of the box around the mesh: the edges of boxes and plates are met exactly.
-        let cells = cells_along(extent, cell_size(extent, wished_cell(mesh, cell)));
+        let cells = cells_along(extent, cell_size(extent, wished));
         let cell = extent / Vec3::from_array(cells.map(|n| n as f32));
         let origin = bounds.min - cell * PADDING as f32;
         Grid { origin, cell, size: cells.map(|n| n as usize + 2 * PADDING + 1) }
@@ -130,16 +130,10 @@ impl Grid {
     }
 }
 
-/// The field of a surface around a mesh: exact distances at the nodes near it. `cell`: wished size, none for one that suits the
-/// thickness. Metres.
-pub(crate) fn bake(
-    mesh: &Mesh,
-    cell: Option<f32>,
-    bounding: &Bounding<'_>,
-    progress: BakeProgress<'_>,
-) -> Field {
-    let dense = Grid::around(mesh, cell);
-    let field = in_blocks(mesh, cell, &dense, |grid, bytes| bake_blocks(grid, bounding, bytes, progress));
+/// The field of a surface around a mesh: exact distances at the nodes near it. `wished`: size of cells. Metres.
+pub(crate) fn bake(mesh: &Mesh, wished: f32, bounding: &Bounding<'_>, progress: BakeProgress<'_>) -> Field {
+    let dense = Grid::around(mesh, wished);
+    let field = in_blocks(mesh, wished, &dense, |grid, bytes| bake_blocks(grid, bounding, bytes, progress));
     let field = field.unwrap_or_else(|| bake_dense(dense, bounding, progress));
     field.measured_on(match bounding {
         Bounding::Exactly(skin) => skin.mesh,
@@ -157,7 +151,7 @@ pub(super) fn bake_dense(grid: Grid, bounding: &Bounding<'_>, progress: BakeProg
 /// if it is finer than the dense grid that is not.
 fn in_blocks(
     mesh: &Mesh,
-    cell: Option<f32>,
+    wished: f32,
     dense: &Grid,
     bake: impl Fn(Grid, usize) -> Option<Field>,
 ) -> Option<Field> {
@@ -165,8 +159,9 @@ fn in_blocks(
     if nodes <= DENSE_MAX {
         return None;
     }
-    let wished = wished_cell(mesh, cell);
-    if dense.cell() <= wished {
+    // Not by the size of its cells: a whole number of them may be a little larger than wished.
+    let extent = mesh.bounds().max - mesh.bounds().min;
+    if cell_size(extent, wished) <= wished {
         return bake(Grid::of_blocks(mesh, wished), nodes);
     }
     // Finer blocks along the surface would be too many, by two layers of them.
@@ -293,9 +288,9 @@ impl Corners {
     }
 }
 
-/// The size of cells that is wished for, or that suits thickness and gaps. Metres.
-fn wished_cell(mesh: &Mesh, cell: Option<f32>) -> f32 {
-    cell.unwrap_or_else(|| mesh.half_thickness().min(mesh.measure_half_gap()) / CELLS_PER_HALF_THICKNESS)
+/// The size of cells that suits the thickness of a mesh and its gaps. Metres.
+pub(crate) fn suitable_cell(mesh: &Mesh) -> f32 {
+    mesh.half_thickness().min(mesh.measure_half_gap()) / CELLS_PER_HALF_THICKNESS
 }
 
 /// The wished cell size, or the smallest larger one (in steps of a twentieth) whose grid is not too large.

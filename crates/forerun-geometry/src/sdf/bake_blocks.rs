@@ -220,7 +220,7 @@ mod tests {
 
     fn dense(mesh: &Mesh, cell: f32) -> Field {
         let bounding = Bounding::Exactly(Skin::of(mesh));
-        super::super::bake::bake_dense(Grid::around(mesh, Some(cell)), &bounding, &|_, _| {})
+        super::super::bake::bake_dense(Grid::around(mesh, cell), &bounding, &|_, _| {})
     }
 
     fn points(count: u32, reach: Vec3) -> impl Iterator<Item = Vec3> {
@@ -232,12 +232,16 @@ mod tests {
         (0..count).map(move |_| Vec3::new(number(), number(), number()) * reach)
     }
 
-    #[test]
-    fn blocks_say_near_the_surface_what_a_dense_grid_says() {
+    fn tilted_torus() -> Mesh {
         let flat = mesh_make::torus(1.0, 0.08, 64, 16).expect("a closed mesh");
         let tilt = Quat::from_rotation_arc(Vec3::Y, Vec3::new(0.6, 0.64, 0.48));
         let vertices: Vec<Vec3> = flat.vertices.iter().map(|v| tilt * *v).collect();
-        let mesh = Mesh::new(vertices, flat.triangles).expect("a closed mesh");
+        Mesh::new(vertices, flat.triangles).expect("a closed mesh")
+    }
+
+    #[test]
+    fn blocks_say_near_the_surface_what_a_dense_grid_says() {
+        let mesh = tilted_torus();
         let (blocks, dense) = (of_blocks(&mesh, 0.02), dense(&mesh, 0.02));
         assert!(3 * blocks.bytes() < dense.bytes(), "{} and {}", blocks.bytes(), dense.bytes());
         let (mut near, mut far) = (0, 0);
@@ -282,6 +286,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_hair_on_the_size_of_cells_does_not_change_blocks_for_a_dense_grid() {
+        let mesh = tilted_torus();
+        let across = mesh.bounds().max.x - mesh.bounds().min.x;
+        // 80 cells either way: a little smaller than wished, and a little larger.
+        let [small, large] = [79.995, 80.005].map(|parts| {
+            super::super::bake::bake(&mesh, across / parts, &Bounding::Exactly(Skin::of(&mesh)), &|_, _| {})
+        });
+        assert!(small.blocks.is_some() && large.blocks.is_some());
+        assert!(small.cell_size().distance(large.cell_size()) < 1e-6);
     }
 
     #[test]

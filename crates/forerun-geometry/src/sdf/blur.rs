@@ -3,7 +3,8 @@
 //! Between its nodes a grid takes the mean of the sides of an edge: the surface seems to be up to a third of a cell
 //! farther away than it is. Contact asks the triangles in these cells.
 //!
-//! Promise: the triangles of a cell hold the surface's nearest point for every point of the cell.
+//! Promise: the triangles of a cell hold the surface's nearest point for every point of the cell. Where a surface is so rough that its
+//! triangles are many to a cell, the cell is left to its interpolation.
 
 use std::collections::BTreeMap;
 
@@ -33,6 +34,8 @@ pub(crate) struct Blur {
     pub(crate) facets: Facets,
     /// How far off its surface the field sees points of sharp edges. Metres.
     pub(crate) depth: f32,
+    /// Cells around sharp edges that are not marked: they have too many triangles.
+    pub(crate) crowded: usize,
 }
 
 /// A run of eights of triangles.
@@ -50,6 +53,12 @@ const POINTS_MAX: f32 = 65_536.0;
 const SPARE: f32 = 1.25;
 /// Triangles are looked for this much farther away than they need be, for what rounding may lose.
 const ROUNDING: f64 = 1.0001;
+/// Most triangles that are looked at for a cell, and listed for it.
+const LIST_MAX: usize = 512;
+/// Most eights of triangles in all lists: 4 MiB. Where they are more, only cells with fewer triangles have lists.
+const EIGHTS_MAX: usize = 1 << 17;
+/// So many times 64 cells are listed at a time, to take no more memory than that.
+const WORDS_AT_A_TIME: usize = 256;
 
 impl Blur {
     /// Marks the cells that edges pass through, and those next to them.
@@ -85,30 +94,52 @@ impl Blur {
         }
     }
 
-    /// Finds the triangles of the marked cells. Cells of the same triangles share a list.
+    /// Finds the triangles of the marked cells, and leaves out cells that have too many.
     fn list_triangles(&mut self, mesh: &Mesh, field: &Field) {
-        let words = self.cells.par_iter().enumerate();
-        let lists: Vec<Vec<Vec<u32>>> = words.map(|(k, word)| lists_of(mesh, field, k * 64, *word)).collect();
+        let marked = std::mem::take(&mut self.cells);
+        let mut most = LIST_MAX;
+        while !self.list_up_to(most, &marked, (mesh, field)) {
+            most /= 2;
+        }
+        let count = |cells: &[u64]| cells.iter().map(|word| word.count_ones() as usize).sum::<usize>();
+        self.crowded = count(&marked) - count(&self.cells);
+        self.facets = Facets::new(mesh);
+    }
+
+    /// Lists the triangles of those of the marked cells that have no more than `most`. Cells of the same triangles share a list. Returns
+    /// whether the lists are not too long in all.
+    fn list_up_to(&mut self, most: usize, marked: &[u64], (mesh, field): (&Mesh, &Field)) -> bool {
+        self.cells.clear();
+        self.before.clear();
+        self.runs.clear();
+        self.triangles.clear();
         let mut known: BTreeMap<Vec<u32>, Run> = BTreeMap::new();
-        for lists in lists {
-            self.before.push(self.runs.len() as u32);
-            for list in lists {
-                let first = self.triangles.len() as u32;
-                let eights = list.chunks(LANES);
-                let run = Run { first, count: eights.len() as u32 };
-                let filled = eights.map(|e| std::array::from_fn(|i| ROWS * e[i.min(e.len() - 1)]));
-                let run = match known.get(&list) {
-                    Some(run) => *run,
-                    None => {
-                        self.triangles.extend(filled);
-                        known.insert(list, run);
-                        run
-                    }
-                };
-                self.runs.push(run);
+        for (k, words) in marked.chunks(WORDS_AT_A_TIME).enumerate() {
+            let first = WORDS_AT_A_TIME * k;
+            let words = words.par_iter().enumerate();
+            let lists: Vec<Lists> =
+                words.map(|(k, word)| lists_of(mesh, field, ((first + k) * 64, *word), most)).collect();
+            for (listed, lists) in lists {
+                self.cells.push(listed);
+                self.before.push(self.runs.len() as u32);
+                for list in lists {
+                    let run = *known.entry(list).or_insert_with_key(|list| self.fill(list));
+                    self.runs.push(run);
+                }
+            }
+            if self.triangles.len() > EIGHTS_MAX {
+                return false;
             }
         }
-        self.facets = Facets::new(mesh);
+        true
+    }
+
+    /// Appends a list.
+    fn fill(&mut self, list: &[u32]) -> Run {
+        let (first, eights) = (self.triangles.len() as u32, list.chunks(LANES));
+        let run = Run { first, count: eights.len() as u32 };
+        self.triangles.extend(eights.map(|e| std::array::from_fn(|i| ROWS * e[i.min(e.len() - 1)])));
+        run
     }
 
     /// Whether there is any sharp edge.
@@ -171,26 +202,37 @@ fn see_lanes<F: Lanes>(blur: &Blur, asked: &Asked, seen: &mut [Seen; LANES], kno
     }
 }
 
-/// The triangles of each of up to 64 cells that are marked.
-fn lists_of(mesh: &Mesh, field: &Field, first: usize, word: u64) -> Vec<Vec<u32>> {
+/// Which of 64 cells have lists, as bits, and their lists.
+type Lists = (u64, Vec<Vec<u32>>);
+
+/// The triangles of each of up to 64 cells from the first that are marked, unless they are more than `most`.
+fn lists_of(mesh: &Mesh, field: &Field, (first, marked): (usize, u64), most: usize) -> Lists {
     let [nx, ny, _] = field.cells();
     let mut guess = None;
-    let marked = (0..64).filter(|bit| word >> bit & 1 == 1).map(|bit| first + bit);
-    marked
-        .map(|index| list_of([index % nx, index / nx % ny, index / nx / ny], mesh, field, &mut guess))
-        .collect()
+    let (mut listed, mut lists) = (0, Vec::new());
+    for bit in (0..64).filter(|bit| marked >> bit & 1 == 1) {
+        let index = first + bit;
+        let list = list_of([index % nx, index / nx % ny, index / nx / ny], mesh, field, &mut guess);
+        if let Some(list) = list.filter(|list| list.len() <= most) {
+            listed |= 1 << bit;
+            lists.push(list);
+        }
+    }
+    (listed, lists)
 }
 
-/// The triangles that may be nearest to points of a cell, in the order of their numbers. `guess` is for the next one.
-fn list_of(cell: [usize; 3], mesh: &Mesh, field: &Field, guess: &mut Option<Nearest>) -> Vec<u32> {
+/// The triangles that may be nearest to points of a cell, in the order of their numbers; none if too many have to be looked at. `guess` is for the
+/// next one.
+fn list_of(cell: [usize; 3], mesh: &Mesh, field: &Field, guess: &mut Option<Nearest>) -> Option<Vec<u32>> {
     let size = field.cell_size();
     let low = field.bounds().min + Vec3::from_array(cell.map(|k| k as f32)) * size;
     // What is nearest to a point of a ball is no farther from its middle than what is nearest to that, and its diameter.
     let diameter = ROUNDING * f64::from(size.length());
     let middle = (low + size * 0.5).as_dvec3();
     let near = nearest(mesh, middle, guess.as_ref());
-    let mut list = near_triangles(mesh, middle, near.distance() + diameter);
+    let list = near_triangles(mesh, middle, near.distance() + diameter, LIST_MAX);
     *guess = Some(near);
+    let mut list = list?;
     if list.len() > LANES {
         // Most of a long list goes if each eighth of the cell is looked at by itself.
         let mut kept = vec![false; list.len()];
@@ -204,13 +246,32 @@ fn list_of(cell: [usize; 3], mesh: &Mesh, field: &Field, guess: &mut Option<Near
         let mut kept = kept.into_iter();
         list.retain(|_| kept.next() == Some(true));
     }
-    list
+    Some(list)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::mesh_make;
+    use crate::shape::{MeshDraft, MeshOptions, mesh_make};
+
+    #[test]
+    fn cells_of_very_many_triangles_are_left_out() {
+        let ball = mesh_make::ball(0.5, 24).unwrap();
+        // Rough: all edges are sharp, and a cell has hundreds of triangles.
+        let jitter = |k: usize| 1.0 + 0.06 * ((k * 7919 % 1009) as f32 / 1009.0 - 0.5);
+        let vertices: Vec<Vec3> = ball.vertices.iter().enumerate().map(|(k, v)| *v * jitter(k)).collect();
+        let baked = |cell| {
+            let options = MeshOptions { cell: Some(cell), ..MeshOptions::default() };
+            let draft = MeshDraft::new(vertices.clone(), ball.triangles.clone(), options).unwrap();
+            draft.bake(&|_, _| {}).unwrap()
+        };
+        let (rough, fine) = (baked(0.3), baked(0.05));
+        assert!(rough.collider().crowded_cells() > 100, "{}", rough.collider().crowded_cells());
+        let blur = &rough.collider().blur;
+        assert!(blur.triangles.len() <= EIGHTS_MAX && *blur == baked(0.3).collider().blur);
+        assert_eq!(fine.collider().crowded_cells(), 0);
+        assert!(fine.collider().blur.is_any());
+    }
 
     #[test]
     fn the_triangles_of_a_cell_hold_the_nearest_point() {

@@ -5,16 +5,21 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::pseudo_normals::corners;
+use super::triangle::corners;
 use crate::Aabb;
 use crate::shape::Mesh;
 
 /// Walls nearer to each other than this part of the size of the mesh count as crossing: they may as well touch.
 const TOUCHING: f64 = 1e-6;
 
+/// How near to each other walls of a mesh touch. Metres.
+pub(crate) fn touching(mesh: &Mesh) -> f64 {
+    TOUCHING * f64::from(mesh.bounds().half_extents().length())
+}
+
 /// Whether two triangles of a mesh without a common corner cross or touch.
 pub(crate) fn has_crossings(mesh: &Mesh) -> bool {
-    let near = TOUCHING * f64::from(mesh.bounds().half_extents().length());
+    let near = touching(mesh);
     (0..mesh.triangles.len()).into_par_iter().any(|t| {
         let own = corners(mesh, t);
         let around = Aabb::around(mesh.corners(t).into_iter()).grown(near as f32);

@@ -6,14 +6,13 @@
 use forerun_lanes::{LANES, LaneMask, Lanes, Row, V8};
 
 use super::nearest::{Feature, Skin};
-use super::pseudo_normals::{EdgeKind, corners};
+use super::pseudo_normals::EdgeKind;
+use super::triangle::{ON_SURFACE, corners};
 use crate::Vec3;
 use crate::shape::Mesh;
 
 /// Rows that a triangle takes.
 pub(super) const ROWS: u32 = 2;
-/// Points this near to the surface are on it: poses are no better known. Metres.
-const ON_SURFACE: f32 = 1e-5;
 
 /// The triangles of a mesh, each in a frame of its own: the first corner is the origin, the first edge the first axis,
 /// and the normal the third.
@@ -166,12 +165,14 @@ impl Seen {
         let length = self.offset.length();
         let sign = if self.offset.dot(normal) < 0.0 { -1.0 } else { 1.0 };
         // On the surface itself the offset is rounding; the normal is what it stands for.
-        (sign * length, if length > ON_SURFACE { self.offset * (sign / length) } else { normal })
+        let gradient = if length > ON_SURFACE { self.offset * (sign / length) } else { normal };
+        // Where parts touch that lie opposite to each other normals cancel out.
+        (sign * length, if gradient == Vec3::ZERO { facets.normal(self.triangle) } else { gradient })
     }
 
     /// Of the planes of the triangles at the nearest point the one that faces `outwards` best: distance (metres) and normal.
     ///
-    /// At a corner it is one of the triangle that was found and those next to it.
+    /// At a corner it is one of the triangle that was found and those next to it; at an edge of more than two triangles the one that was found.
     pub(crate) fn facing(&self, skin: &Skin<'_>, facets: &Facets, outwards: Vec3) -> (f32, Vec3) {
         let own = facets.normal(self.triangle);
         let edges = match self.feature {
@@ -182,11 +183,11 @@ impl Seen {
         let mut best = own;
         for k in edges.into_iter().flatten() {
             let edge = skin.normals.triangle_edges[self.triangle as usize][k] as usize;
-            // The normal of the edge is halfway between those of its two triangles.
+            // The normal of the edge is halfway between those of its two triangles. Of more it does not tell them.
             let middle = skin.normals.edge_normals[edge];
             let other = middle * (2.0 * own.dot(middle)) - own;
-            let is_better = skin.normals.edge_kinds[edge] != EdgeKind::Boundary
-                && other.dot(outwards) < best.dot(outwards) - 1e-6;
+            let is_of_two = !matches!(skin.normals.edge_kinds[edge], EdgeKind::Boundary | EdgeKind::Crowded);
+            let is_better = is_of_two && other.dot(outwards) < best.dot(outwards) - 1e-6;
             best = if is_better { other } else { best };
         }
         (self.offset.dot(best), best)
@@ -199,6 +200,55 @@ mod tests {
 
     use super::*;
     use crate::sdf::nearest::nearest;
+    use crate::shape::{Enclosure, mesh_make};
+
+    /// Two wedges with one edge in common, along z.
+    fn wedges() -> Mesh {
+        let mut vertices = vec![Vec3::ZERO, Vec3::Z];
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        for [from, to] in [[0.0_f32, 30.0], [90.0, 140.0]] {
+            let first = vertices.len() as u32;
+            for angle in [from, to] {
+                let (sin, cos) = libm::sincosf(angle.to_radians());
+                let end = Vec3::new(cos, sin, 0.0);
+                vertices.extend([end, end + Vec3::Z]);
+            }
+            let [a, b, c, d] = [first, first + 1, first + 2, first + 3];
+            let quads = [[0, a, b, 1], [a, c, d, b], [c, 0, 1, d]];
+            triangles.extend(quads.iter().flat_map(|[p, q, r, s]| [[*p, *q, *r], [*p, *r, *s]]));
+            triangles.extend([[0, c, a], [1, b, d]]);
+        }
+        Mesh::new(vertices, triangles).expect("a closed mesh")
+    }
+
+    #[test]
+    fn at_an_edge_of_four_triangles_only_planes_of_triangles_face_anything() {
+        let mesh = wedges();
+        let (skin, facets) = (Skin::of(&mesh), Facets::new(&mesh));
+        assert_eq!((mesh.enclosure, mesh.repairs.crowded_edges), (Enclosure::Closed, 1));
+        let eights = [0, 1].map(|k| std::array::from_fn(|i| ROWS * (LANES * k + i) as u32));
+        for i in 0..24_u8 {
+            let (sin, cos) = libm::sincosf((15.0 * f32::from(i)).to_radians());
+            let way = Vec3::new(cos, sin, 0.0);
+            let seen = facets.nearest::<Portable>(&eights, way * 0.01 + Vec3::Z * 0.4);
+            let inside = (0..30).contains(&(15 * u32::from(i))) || (91..140).contains(&(15 * u32::from(i)));
+            let (distance, _) = seen.signed(&skin, &facets);
+            assert!(distance.abs() < 1e-6 || (distance < 0.0) == inside, "{distance} at {} degrees", 15 * i);
+            for outwards in [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y, way, -way] {
+                let (_, normal) = seen.facing(&skin, &facets, outwards);
+                let is_of_triangle = (0..16).any(|t| facets.normal(t).distance(normal) < 1e-5);
+                assert!(is_of_triangle, "{normal} at {} degrees", 15 * u32::from(i));
+            }
+        }
+        // On the edge itself of cubes opposite to each other normals cancel out.
+        let cube = mesh_make::cuboid(Vec3::ONE).expect("a closed mesh");
+        let offset = Vec3::new(2.0, 2.0, 0.0);
+        let vertices = cube.vertices.iter().copied().chain(cube.vertices.iter().map(|v| *v + offset));
+        let triangles = cube.triangles.iter().copied().chain(cube.triangles.iter().map(|t| t.map(|i| i + 8)));
+        let mesh = Mesh::new(vertices.collect(), triangles.collect()).expect("a closed mesh");
+        let gradient = Skin::of(&mesh).look_up(Vec3::new(1.0, 1.0, 0.3)).gradient;
+        assert!((gradient.length() - 1.0).abs() < 1e-6, "{gradient}");
+    }
 
     #[test]
     fn of_eight_triangles_the_nearest_is_found_as_exactly_as_in_double_precision() {

@@ -10,7 +10,7 @@ use crate::Vec3;
 use crate::shape::{Enclosure, Inside, MeshOptions, MeshRepairs};
 
 /// Counts up whenever the baker gives other fields or the layout of the bytes changes.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// The first bytes.
 const MAGIC: [u8; 8] = *b"forerunF";
 

@@ -3,15 +3,15 @@
 //! Holes are covered first, so that the triangles go round every point a whole number of times (see [`winding`]); what they go round at
 //! least once is inside. Walls with the inside, or the outside, on both sides do not count.
 //!
-//! Needs: triangles of one part that face the same way. Promise: a surface made of pieces of the triangles and covers; where two shells
-//! cross it may end up to a piece too late or too early.
+//! Needs: triangles of one part that face the same way, and crowded edges counted. Promise: a surface made of pieces of the triangles and
+//! covers; where two shells cross it may end up to a piece too late or too early.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::crossing::has_crossings;
 use super::kept::Found;
-use super::pseudo_normals::corners;
+use super::triangle::{area, corners, face_vector};
 use super::winding::winding;
 use crate::Vec3;
 use crate::shape::Mesh;
@@ -73,12 +73,19 @@ impl Areas {
     fn mixed(&self) -> bool {
         self.inner + self.sheet > 0.0
     }
+
+    /// Whether all of it is a wall between outside and inside, as it should be.
+    fn is_surface(&self) -> bool {
+        !self.mixed() && self.reversed <= 0.0
+    }
 }
 
 /// Tells what a mesh is the surface of. `shells`: a triangle of each part of it. `cell`: size of the cells that its field will have,
 /// about. Metres.
 pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) -> Verdict {
-    if covers.triangles.is_empty() && !has_crossings(mesh) {
+    let may_be_sound = covers.triangles.is_empty() && !has_crossings(mesh);
+    let is_crowded = mesh.repairs.crowded_edges > 0;
+    if may_be_sound && !is_crowded {
         let walls = Walls { covered: mesh, beside: BESIDE * cell };
         // Shells that do not cross are wholly inside of others or wholly outside.
         if shells.len() < 2 || shells.iter().all(|t| walls.sides(corners(mesh, *t)) == (false, true)) {
@@ -92,12 +99,17 @@ pub(crate) fn survey(mesh: &Mesh, shells: &[usize], covers: &Covers, cell: f64) 
     let covered = Mesh::assemble(vertices, triangles);
     let walls = Walls { covered: &covered, beside: BESIDE * cell };
     // Nothing that is as thick as the mesh passes between points that are half as far apart.
-    let mut areas = walls.areas(f64::from(mesh.half_thickness()).max(2.0 * cell));
+    let thickness = f64::from(mesh.half_thickness()).max(2.0 * cell);
+    let mut areas = walls.areas(walls.piece_size(|_| true, thickness));
+    // Parts that touch at edges may share walls too, or be there twice.
+    if may_be_sound && is_crowded && areas.iter().all(Areas::is_surface) && walls.are_single() {
+        return Verdict::Sound;
+    }
     if areas.iter().any(Areas::mixed) {
-        areas = walls.areas(walls.piece_size(&areas, 2.0 * cell));
+        areas = walls.areas(walls.piece_size(|t| areas[t].mixed(), 2.0 * cell));
     }
     let Some(found) = judge(&areas, mesh.triangles.len()) else { return Verdict::Hopeless };
-    let size = walls.piece_size(&areas, cell);
+    let size = walls.piece_size(|t| areas[t].mixed(), cell);
     let surface = walls.surface(&areas, size);
     if surface.is_empty() {
         return Verdict::Hopeless;
@@ -173,29 +185,38 @@ impl Walls<'_> {
         pieces.into_iter().flatten().filter(|piece| area(*piece) > 0.0).collect()
     }
 
-    /// The wished size of pieces, or a larger one if mixed triangles would be cut into too many.
-    fn piece_size(&self, areas: &[Areas], wished: f64) -> f64 {
-        let mixed = (0..areas.len()).filter(|t| areas[*t].mixed()).map(|t| area(corners(self.covered, t)));
+    /// The wished size of pieces, or a larger one if the triangles to be cut would be cut into too many.
+    fn piece_size(&self, to_cut: impl Fn(usize) -> bool, wished: f64) -> f64 {
+        let triangles = (0..self.covered.triangles.len()).filter(|t| to_cut(*t));
+        let total: f64 = triangles.map(|t| area(corners(self.covered, t))).sum();
         // A piece has, on average, about a quarter of the square of its longest edge.
-        wished.max((4.0 * mixed.sum::<f64>() / PIECES_MAX).sqrt())
+        wished.max((4.0 * total / PIECES_MAX).sqrt())
+    }
+
+    /// Whether what is behind the middles of all triangles is gone round once.
+    fn are_single(&self) -> bool {
+        let is_single =
+            |t: usize| self.counts(corners(self.covered, t)).is_none_or(|(_, behind)| behind == 1);
+        (0..self.covered.triangles.len()).into_par_iter().all(is_single)
     }
 
     /// Whether inside is in front of a piece of a wall, and behind it.
     fn sides(&self, piece: [DVec3; 3]) -> (bool, bool) {
+        self.counts(piece).map_or((false, true), |(front, behind)| (front > 0, behind > 0))
+    }
+
+    /// How often what is in front of a piece of a wall is gone round, and what is behind it; none for a piece without area.
+    fn counts(&self, piece: [DVec3; 3]) -> Option<(i32, i32)> {
         let [a, b, c] = piece;
-        let vector = (b - a).cross(c - a);
-        let Some(normal) = vector.try_normalize() else { return (false, true) };
+        let vector = face_vector(piece);
+        let normal = vector.try_normalize()?;
         let around = a.distance(b) + b.distance(c) + c.distance(a);
         // The radius of the circle inside is twice the area over the length around.
         let beside = self.beside.min(BESIDE_PIECE * vector.length() / around);
         let middle = (a + b + c) / 3.0;
-        let holds = |p: DVec3| winding(self.covered, p) > 0;
-        (holds(middle + normal * beside), holds(middle - normal * beside))
+        let count = |p: DVec3| winding(self.covered, p);
+        Some((count(middle + normal * beside), count(middle - normal * beside)))
     }
-}
-
-fn area([a, b, c]: [DVec3; 3]) -> f64 {
-    0.5 * (b - a).cross(c - a).length()
 }
 
 /// Calls `visit` with pieces of a triangle whose edges are no longer than `size`, by cutting the longest in half again and again.

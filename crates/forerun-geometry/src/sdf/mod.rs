@@ -12,7 +12,7 @@ pub(crate) mod bake;
 mod bake_blocks;
 mod blocks;
 pub(crate) mod blur;
-mod crossing;
+pub(crate) mod crossing;
 pub(crate) mod eight;
 pub(crate) mod facets;
 mod field;
@@ -25,6 +25,7 @@ pub(crate) mod primitive;
 pub(crate) mod pseudo_normals;
 pub(crate) mod ridges;
 pub(crate) mod samples;
+pub(crate) mod triangle;
 pub(crate) mod winding;
 
 pub use accuracy::{FieldError, Spread};
@@ -88,6 +89,12 @@ impl MeshCollider {
         MeshCollider { field, samples, ridges, moments, blur, normals }
     }
 
+    /// Cells of the field around sharp edges whose triangles are too many to be asked: there contact goes by the field, which rounds edges off.
+    #[must_use]
+    pub fn crowded_cells(&self) -> usize {
+        self.blur.crowded
+    }
+
     /// Memory that it takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
@@ -110,7 +117,9 @@ fn sharp_edges(mesh: &Mesh, normals: &PseudoNormals) -> Vec<[Vec3; 2]> {
 fn touchable_edges(mesh: &Mesh, normals: &PseudoNormals) -> Vec<Ridge> {
     let (_, facing_max) = facing_max(mesh, normals);
     (0..normals.edges.len())
-        .filter(|e| matches!(normals.edge_kinds[*e], EdgeKind::Ridge | EdgeKind::Boundary))
+        .filter(|e| {
+            matches!(normals.edge_kinds[*e], EdgeKind::Ridge | EdgeKind::Boundary | EdgeKind::Crowded)
+        })
         .map(|e| Ridge {
             ends: normals.edges[e].map(|v| mesh.vertices[v as usize]),
             normal: normals.edge_normals[e],
@@ -163,7 +172,7 @@ fn least_cosines(mesh: &Mesh, normals: &PseudoNormals) -> (Vec<f32>, Vec<f32>) {
     let (mut at_vertices, mut at_edges) =
         (vec![1.0_f32; mesh.vertices.len()], vec![1.0_f32; normals.edges.len()]);
     for (t, (corners, edges)) in mesh.triangles.iter().zip(&normals.triangle_edges).enumerate() {
-        let normal = pseudo_normals::face_normal(mesh, t).as_vec3();
+        let normal = triangle::face_normal(mesh, t).as_vec3();
         for v in corners.map(|v| v as usize) {
             at_vertices[v] = at_vertices[v].min(normals.vertex_normals[v].dot(normal));
         }

@@ -5,7 +5,8 @@
 
 use glam::DVec3;
 
-use super::pseudo_normals::{EdgeKind, PseudoNormals, corners, face_normal};
+use super::pseudo_normals::{EdgeKind, PseudoNormals};
+use super::triangle::{ON_SURFACE, corners, face_normal};
 use crate::shape::Mesh;
 use crate::{Aabb, Vec3};
 
@@ -56,9 +57,6 @@ pub(crate) struct Signed {
     pub(crate) on_boundary: bool,
 }
 
-/// Points this near to the surface are on it: poses are no better known. Metres.
-const ON_SURFACE: f64 = 1e-5;
-
 impl<'a> Skin<'a> {
     /// The skin of a finished mesh.
     pub(crate) fn of(mesh: &'a Mesh) -> Skin<'a> {
@@ -88,7 +86,10 @@ impl<'a> Skin<'a> {
         let length = nearest.distance_squared.sqrt();
         let sign = if offset.dot(normal) < 0.0 { -1.0 } else { 1.0 };
         // On the surface itself the offset is rounding; the normal is what it stands for.
-        let gradient = if length > ON_SURFACE { offset * (sign / length) } else { normal };
+        let gradient = if length > f64::from(ON_SURFACE) { offset * (sign / length) } else { normal };
+        // Where parts touch that lie opposite to each other normals cancel out.
+        let gradient =
+            if gradient == DVec3::ZERO { face_normal(self.mesh, nearest.triangle) } else { gradient };
         Signed { distance: sign * length, gradient: gradient.as_vec3(), on_boundary }
     }
 
@@ -115,19 +116,20 @@ pub(crate) fn nearest(mesh: &Mesh, point: DVec3, guess: Option<&Nearest>) -> Nea
     best
 }
 
-/// The triangles no farther from a point than a limit (metres), in the order of their numbers.
-pub(crate) fn near_triangles(mesh: &Mesh, point: DVec3, limit: f64) -> Vec<u32> {
+/// The triangles no farther from a point than a limit (metres), in the order of their numbers; none if they are more than `most`.
+pub(crate) fn near_triangles(mesh: &Mesh, point: DVec3, limit: f64, most: usize) -> Option<Vec<u32>> {
     let mut found = Vec::new();
     let distance = |bounds: &Aabb| Some(distance_squared(bounds, point));
     let visit = |triangle: u32| {
         if triangle_distance(mesh, triangle, point) <= limit {
             found.push(triangle);
         }
-        limit * limit
+        // Nothing more is near enough once they are too many.
+        if found.len() > most { -1.0 } else { limit * limit }
     };
     mesh.tree().walk(distance, visit, limit * limit);
     found.sort_unstable();
-    found
+    (found.len() <= most).then_some(found)
 }
 
 /// How far a triangle is from a point. Metres.
@@ -182,6 +184,7 @@ fn nearest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, Feature) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sdf::triangle::face_vector;
 
     /// A cube of half extent 1 with a pyramid cut into its top: convex and concave edges and corners.
     fn notched_cube() -> Mesh {
@@ -205,7 +208,7 @@ mod tests {
             let [a, b, c] = corners(mesh, *t).map(|v| v - p);
             let volumes = [a.cross(b).dot(way), b.cross(c).dot(way), c.cross(a).dot(way)];
             let through = volumes.iter().all(|v| *v > 0.0) || volumes.iter().all(|v| *v < 0.0);
-            let n = (b - a).cross(c - a);
+            let n = face_vector([a, b, c]);
             through && a.dot(n) / way.dot(n) > 0.0
         });
         crossings.count() % 2 == 1

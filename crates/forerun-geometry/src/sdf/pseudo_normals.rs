@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::triangle::{corners, face_normal};
 use crate::Vec3;
 use crate::shape::Mesh;
 
@@ -9,7 +10,9 @@ use crate::shape::Mesh;
 ///
 /// Bærentzen and Aanæs, *Signed Distance Computation Using the Angle Weighted Pseudonormal* (2005): with these normals
 /// a point is outside a closed surface exactly where the offset from its nearest surface point has a positive product
-/// with the normal of the face, edge or vertex that this point lies on.
+/// with the normal of the face, edge or vertex that this point lies on. That holds of edges of four triangles or more too: the sum of their
+/// normals faces away from what is inside around the edge, as the integral over the part inside of a small circle does, and where it
+/// is zero no point but those of the edge is nearest to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PseudoNormals {
     /// Unit normal at each vertex, weighted by the angles of its triangles.
@@ -37,6 +40,8 @@ pub(crate) enum EdgeKind {
     Flat,
     /// Triangles are missing: the surface ends here.
     Boundary,
+    /// More than two triangles meet without an end of the surface: edges of parts that touch here.
+    Crowded,
 }
 
 /// Cosine of the angle between normals above which an edge counts as flat: 5 degrees.
@@ -75,22 +80,6 @@ impl PseudoNormals {
     }
 }
 
-/// The corners of a triangle of a mesh, in double precision.
-pub(crate) fn corners(mesh: &Mesh, triangle: usize) -> [DVec3; 3] {
-    let [a, b, c] = mesh.triangles[triangle];
-    [
-        mesh.vertices[a as usize].as_dvec3(),
-        mesh.vertices[b as usize].as_dvec3(),
-        mesh.vertices[c as usize].as_dvec3(),
-    ]
-}
-
-/// Unit normal of a triangle of a mesh.
-pub(crate) fn face_normal(mesh: &Mesh, triangle: usize) -> DVec3 {
-    let [a, b, c] = corners(mesh, triangle);
-    (b - a).cross(c - a).normalize()
-}
-
 fn edges_of(c: [u32; 3]) -> [[u32; 2]; 3] {
     [(c[0], c[1]), (c[1], c[2]), (c[2], c[0])].map(|(a, b)| [a.min(b), a.max(b)])
 }
@@ -114,6 +103,8 @@ fn edge_normals(mesh: &Mesh, triangle_edges: &[[u32; 3]], edges: usize) -> (Vec<
         let mean = sums[k].length() / f64::from(counts[k].max(1));
         if balance[k] != 0 {
             EdgeKind::Boundary
+        } else if counts[k] > 2 {
+            EdgeKind::Crowded
         } else if 2.0 * mean * mean - 1.0 > FLAT_COSINE {
             // The mean of two unit vectors is as long as the cosine of half the angle between them.
             EdgeKind::Flat

@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::pseudo_normals::corners;
+use super::triangle::corners;
 use crate::Aabb;
 use crate::shape::Mesh;
 

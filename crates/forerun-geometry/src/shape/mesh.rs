@@ -10,7 +10,7 @@ use crate::{Aabb, BoundingSphere, Pose, Vec3};
 /// A triangle mesh. Fields are public to read; make one with [`Mesh::new`], [`Mesh::open`] or a [`MeshDraft`].
 ///
 /// *Invariant:* vertices are finite, different from each other and each used by a triangle; the three corners of a triangle differ;
-/// of a closed mesh every edge belongs to exactly two triangles that pass it in opposite directions, and normals point outwards.
+/// of a closed mesh as many triangles pass an edge one way as the other, mostly one each, and normals point outwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Vertices. Metres.
@@ -41,7 +41,8 @@ impl Mesh {
         MeshDraft::new(vertices, triangles, MeshOptions::default())?.bake(&|_, _| {})
     }
 
-    /// A mesh that need not have an inside: for fixed bodies, like terrain. It is closed all the same when its edges say so.
+    /// A mesh that need not have an inside: for fixed bodies, like terrain. It is closed all the same when its edges say so, unless it faces
+    /// inwards: a room stays one.
     ///
     /// # Errors
     /// When there is no triangle, a number is not finite, or an index is out of range.

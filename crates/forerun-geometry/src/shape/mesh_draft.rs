@@ -10,7 +10,7 @@ use super::mesh_topology::{
 };
 use crate::Vec3;
 use crate::sdf::MeshCollider;
-use crate::sdf::bake::{Bounding, Grid, bake};
+use crate::sdf::bake::{Bounding, Grid, bake, suitable_cell};
 use crate::sdf::kept::{BakeKey, Found, Kept, KeptError};
 use crate::sdf::mend::{Covers, Verdict, survey};
 use crate::sdf::nearest::Skin;
@@ -36,7 +36,7 @@ pub enum Inside {
     /// It is an error to have none. What is nearly closed is mended.
     #[default]
     Needed,
-    /// What is not closed stays [open](Enclosure::Open) as it is: terrain and other fixed bodies.
+    /// What is not closed, or is but faces inwards as a room does, stays [open](Enclosure::Open) as it is: terrain and other fixed bodies.
     Optional,
 }
 
@@ -107,6 +107,9 @@ impl MeshDraft {
             self.cover();
         }
         let (volume, area) = self.volume_and_area();
+        if self.options.inside == Inside::Optional && self.faces_inwards(volume, &parts) {
+            return Err(MeshError::NoVolume { volume });
+        }
         // Of a solid of size L the volume is known to about 1e-7 L³ and the area is about L²: less than that is nothing.
         if volume.abs() <= 1e-6 * area * area.sqrt() {
             return edges.and(Err(MeshError::NoVolume { volume }));
@@ -123,6 +126,11 @@ impl MeshDraft {
         self.shells = shells.into_iter().map(|(_, triangle)| triangle).collect();
         self.edges = edges.err();
         Ok(())
+    }
+
+    /// Whether any part of a mesh faces inwards that is no cavity of others: a room, seen from inside.
+    fn faces_inwards(&self, volume: f64, parts: &[u32]) -> bool {
+        volume < 0.0 || turn_shells(&self.vertices, &mut self.triangles.clone(), parts) > 0
     }
 
     fn cover(&mut self) {
@@ -173,7 +181,7 @@ impl MeshDraft {
         progress: BakeProgress<'_>,
     ) -> Result<Option<Field>, MeshError> {
         mesh.half_thickness = mesh.measure_half_thickness();
-        let wished = self.options.cell;
+        let wished = self.options.cell.unwrap_or_else(|| suitable_cell(mesh));
         let cell = Grid::around(mesh, wished).cell();
         match survey(mesh, &self.shells, &self.covers, cell.into()) {
             Verdict::Sound => {

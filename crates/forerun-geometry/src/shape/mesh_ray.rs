@@ -5,9 +5,11 @@ use robust::{Coord3D, orient3d};
 
 use super::Mesh;
 use crate::Aabb;
+use crate::sdf::crossing::touching;
+use crate::sdf::triangle::{corners, face_vector};
 
 /// How many lines thickness and gaps are measured along, at most.
-const PROBES: usize = 1024;
+const PROBES: u32 = 1024;
 /// The part of the surface where it is thinnest, or nearest to another part, that does not count: sharp edges are thin without end.
 const NARROW_PARTS: f64 = 0.05;
 /// Half a thickness below this part of half the longest side of the mesh is not told from none.
@@ -55,8 +57,8 @@ impl Mesh {
         self.tree().walk(
             |bounds| box_entry(bounds, origin, inverse),
             |triangle| {
-                let corners = self.corners(triangle as usize).map(|v| v.as_dvec3());
-                if let Some((t, side)) = triangle_hit(origin, direction, corners) {
+                let hit = corners(self, triangle as usize);
+                if let Some((t, side)) = triangle_hit(origin, direction, hit) {
                     let nearest = if side == Side::Front { &mut first.front } else { &mut first.back };
                     nearest.offer(t, triangle);
                 }
@@ -69,8 +71,7 @@ impl Mesh {
 
     /// Outward normal of a triangle, not of unit length.
     pub(crate) fn face_vector(&self, triangle: u32) -> DVec3 {
-        let [a, b, c] = self.corners(triangle as usize).map(|v| v.as_dvec3());
-        (b - a).cross(c - a)
+        face_vector(corners(self, triangle as usize))
     }
 
     /// Half the thickness below which only a twentieth of the surface lies, measured from the middles of triangles straight
@@ -85,22 +86,24 @@ impl Mesh {
     }
 
     /// Half the width of the narrowest gaps between parts of the surface that face each other: grooves of a thread, slits, holes. Measured from
-    /// the middles of triangles straight out, but for the narrowest twentieth of the surface; infinite where less of it faces anything. Metres.
+    /// the middles of triangles straight out, but for the narrowest twentieth of the surface; infinite where less of it faces anything. What
+    /// touches leaves no gap. Metres.
     pub(crate) fn measure_half_gap(&self) -> f32 {
-        let gap =
-            self.narrow(|middle, outward| self.first_hits(middle, outward, |first| first.front.t).front.t);
+        let touching = touching(self);
+        let gap = self.narrow(|middle, outward| {
+            let width = self.first_hits(middle, outward, |first| first.front.t).front.t;
+            if width > touching { width } else { f64::INFINITY }
+        });
         (0.5 * gap) as f32
     }
 
     /// The length below which only a twentieth of the surface lies. `length` tells it at the middle of a triangle with its outward unit normal.
     fn narrow(&self, length: impl Fn(DVec3, DVec3) -> f64) -> f64 {
-        let stride = self.triangles.len().div_ceil(PROBES);
         let mut probes: Vec<(f64, f64)> = Vec::new();
-        for triangle in (0..self.triangles.len()).step_by(stride) {
-            let outward = self.face_vector(triangle as u32);
-            let [a, b, c] = self.corners(triangle).map(|v| v.as_dvec3());
-            if let Some(unit) = outward.try_normalize() {
-                probes.push((length((a + b + c) / 3.0, unit), outward.length()));
+        for (triangle, area) in self.probed() {
+            let [a, b, c] = corners(self, triangle as usize);
+            if let Some(unit) = self.face_vector(triangle).try_normalize() {
+                probes.push((length((a + b + c) / 3.0, unit), area));
             }
         }
         probes.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -113,6 +116,21 @@ impl Mesh {
             }
         }
         f64::INFINITY
+    }
+
+    /// Triangles to measure at, and areas that they stand for, in whatever unit: all of them if they are few, else one for each of some equal parts
+    /// of the surface.
+    fn probed(&self) -> Vec<(u32, f64)> {
+        let all = self.triangles.len() as u32;
+        if all <= PROBES {
+            return (0..all).map(|t| (t, self.face_vector(t).length())).collect();
+        }
+        let mut probed: Vec<(u32, f64)> = Vec::new();
+        self.each_part(PROBES, |_, t| match probed.last_mut() {
+            Some((last, parts)) if *last == t => *parts += 1.0,
+            _ => probed.push((t, 1.0)),
+        });
+        probed
     }
 }
 
@@ -163,7 +181,7 @@ fn triangle_hit(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Optio
 
 #[cfg(test)]
 mod tests {
-    use super::super::mesh_make;
+    use super::super::{Mesh, mesh_make};
     use crate::Vec3;
     use glam::DVec3;
     use std::cell::Cell;
@@ -198,13 +216,41 @@ mod tests {
     }
 
     #[test]
+    fn a_few_large_triangles_among_many_small_ones_count_by_their_area() {
+        let plate = mesh_make::cuboid(Vec3::new(0.5, 0.01, 0.5)).unwrap();
+        let ball = mesh_make::ball(0.3, 16).unwrap();
+        let first = ball.vertices.len() as u32;
+        let vertices: Vec<Vec3> =
+            ball.vertices.iter().copied().chain(plate.vertices.iter().map(|v| *v + Vec3::Y)).collect();
+        let triangles: Vec<[u32; 3]> = ball
+            .triangles
+            .iter()
+            .copied()
+            .chain(plate.triangles.iter().map(|t| t.map(|i| i + first)))
+            .collect();
+        // Wherever in the list they stand.
+        for shift in 0..6 {
+            let mut triangles = triangles.clone();
+            triangles.rotate_left(shift);
+            let mesh = Mesh::assemble(vertices.clone(), triangles);
+            let found = mesh.measure_half_thickness();
+            assert!((found / 0.01 - 1.0).abs() < 0.01, "{found} m, rotated by {shift}");
+        }
+    }
+
+    #[test]
     fn gaps_of_known_solids() {
         let about =
             |found: f32, wanted: f32| assert!((found / wanted - 1.0).abs() < 0.03, "{found}, not {wanted}");
         // Across the hole; a round one is wider where it is measured from the middle of a facet.
         about(mesh_make::frame(Vec3::new(0.5, 0.3, 0.5), 0.4).unwrap().measure_half_gap(), 0.1);
         about(mesh_make::ring(1.0, 0.2, 0.5, 128).unwrap().measure_half_gap(), 0.2);
-        assert!(mesh_make::cuboid(Vec3::ONE).unwrap().measure_half_gap().is_infinite());
+        let cube = mesh_make::cuboid(Vec3::ONE).unwrap();
+        assert!(cube.measure_half_gap().is_infinite());
+        // Two that touch with a whole face.
+        let vertices = cube.vertices.iter().copied().chain(cube.vertices.iter().map(|v| *v + 2.0 * Vec3::X));
+        let triangles = cube.triangles.iter().copied().chain(cube.triangles.iter().map(|t| t.map(|i| i + 8)));
+        assert!(Mesh::assemble(vertices.collect(), triangles.collect()).measure_half_gap().is_infinite());
         // The groove of a thread: at most the pitch less its crest, at least the root.
         let thread = mesh_make::Thread { radius: 0.24, pitch: 0.08 };
         let (head, outside) = (mesh_make::Grip::Round, mesh_make::Grip::Round);

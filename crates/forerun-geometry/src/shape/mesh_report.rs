@@ -7,7 +7,8 @@ use crate::Vec3;
 /// How the triangles of a mesh bound a volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Enclosure {
-    /// Every edge belongs to two triangles that pass it in opposite directions, and no part of the surface is inside of another.
+    /// Every edge belongs to two triangles that pass it in opposite directions, or to several such pairs where parts touch, and no part
+    /// of the surface is inside of another.
     Closed,
     /// There is an inside all the same: small holes are covered, and walls inside of the volume do not count.
     Mended,

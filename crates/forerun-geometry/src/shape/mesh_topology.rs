@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::roots::Roots;
 use super::{Mesh, MeshError};
 use crate::Vec3;
 use crate::sdf::mend::Covers;
+use crate::sdf::triangle::{self, corners, corners_of};
 use crate::sdf::winding::winding;
 
 /// How often slivers beside slivers are taken up again.
@@ -73,8 +75,7 @@ pub(super) fn recut_slivers(vertices: &[Vec3], triangles: &mut [[u32; 3]]) -> u3
 
 /// Different corners, all in a line. Exact: of `f32` positions the products that cancel are exact in `f64`.
 fn is_sliver(vertices: &[Vec3], [a, b, c]: [u32; 3]) -> bool {
-    let [p, q, r] = [a, b, c].map(|i| vertices[i as usize].as_dvec3());
-    a != b && b != c && c != a && (q - p).cross(r - p).length_squared() <= 0.0
+    a != b && b != c && c != a && face_vector(vertices, [a, b, c]).length_squared() <= 0.0
 }
 
 /// The same triangle, turned so that its longest edge leads from the third corner to the first.
@@ -220,33 +221,38 @@ pub(super) fn covers(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Covers {
         rims.extend((up..down).map(|_| [low, high]));
     }
     // Rims that share a vertex are of one hole: it is named by a vertex.
-    let mut hole: Vec<u32> = (0..vertices.len() as u32).collect();
-    let find = |hole: &[u32], mut v: u32| {
-        while hole[v as usize] != v {
-            v = hole[v as usize];
-        }
-        v
-    };
+    let mut holes = Roots::new(vertices.len());
     for [a, b] in &rims {
-        let (a, b) = (find(&hole, *a), find(&hole, *b));
-        // The lower name: rims come sorted, so that chains stay short.
-        hole[a.max(b) as usize] = a.min(b);
+        holes.join(*a, *b);
     }
     let mut middles: BTreeMap<u32, (DVec3, f64, u32)> = BTreeMap::new();
     for rim in &rims {
         let [a, b] = rim.map(|v| vertices[v as usize].as_dvec3());
         let next = vertices.len() as u32 + middles.len() as u32;
-        let middle = middles.entry(find(&hole, rim[0])).or_insert((DVec3::ZERO, 0.0, next));
+        let middle = middles.entry(holes.root(rim[0])).or_insert((DVec3::ZERO, 0.0, next));
         let length = a.distance(b);
         middle.0 += (a + b) * (0.5 * length);
         middle.1 += length;
     }
-    let triangles = rims.iter().map(|[a, b]| [*a, *b, middles[&find(&hole, *a)].2]).collect();
+    let triangles = rims.iter().map(|[a, b]| [*a, *b, middles[&holes.root(*a)].2]).collect();
     let mut apexes = vec![Vec3::ZERO; middles.len()];
     for (sum, length, index) in middles.values() {
         apexes[*index as usize - vertices.len()] = (sum / length).as_vec3();
     }
     Covers { apexes, triangles }
+}
+
+impl Mesh {
+    /// How many parts of the surface do not hang together, not even by a vertex.
+    #[must_use]
+    pub fn shells(&self) -> usize {
+        let mut parts = Roots::new(self.vertices.len());
+        let mut joined = 0;
+        for [a, b, c] in &self.triangles {
+            joined += usize::from(parts.join(*a, *b)) + usize::from(parts.join(*a, *c));
+        }
+        self.vertices.len() - joined
+    }
 }
 
 /// Number of edges of more than two triangles, and the vertices of the first.
@@ -259,8 +265,7 @@ pub(super) fn crowded_edges(triangles: &[[u32; 3]]) -> (u32, Option<[u32; 2]>) {
 
 /// Normal of a triangle, twice as long as its area.
 fn face_vector(vertices: &[Vec3], triangle: [u32; 3]) -> DVec3 {
-    let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3());
-    (b - a).cross(c - a)
+    triangle::face_vector(corners_of(vertices, triangle))
 }
 
 /// Turns whole parts that face inwards without being a cavity in others. `parts`: of each triangle. Returns how many triangles.
@@ -280,8 +285,8 @@ pub(super) fn turn_shells(vertices: &[Vec3], triangles: &mut [[u32; 3]], parts: 
     let mut turned = 0;
     for (t, part) in parts.iter().enumerate() {
         let turn = turn[*part as usize].get_or_insert_with(|| {
-            let [a, b, c] = outward.corners(t).map(|v| v.as_dvec3());
-            let vector = (b - a).cross(c - a);
+            let [a, b, c] = corners(&outward, t);
+            let vector = triangle::face_vector([a, b, c]);
             let beside = vector.normalize_or_zero() * (1e-3 * vector.length().sqrt());
             winding(&outward, (a + b + c) / 3.0 + beside).rem_euclid(2) == 0
         });
@@ -299,7 +304,7 @@ fn part_volumes(vertices: &[Vec3], triangles: &[[u32; 3]], parts: &[u32]) -> Vec
     let mut middles = vec![(DVec3::ZERO, 0.0); count];
     for (triangle, part) in triangles.iter().zip(parts) {
         let area = face_vector(vertices, *triangle).length();
-        let [a, b, c] = triangle.map(|i| vertices[i as usize].as_dvec3());
+        let [a, b, c] = corners_of(vertices, *triangle);
         let middle = &mut middles[*part as usize];
         middle.0 += (a + b + c) * (area / 3.0);
         middle.1 += area;
@@ -320,7 +325,7 @@ pub(super) fn volume_and_area(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (f64
     for triangle in triangles {
         let [a, b, c]: [DVec3; 3] = triangle.map(|i| vertices[i as usize].as_dvec3() - origin);
         volume += a.dot(b.cross(c)) / 6.0;
-        area += (b - a).cross(c - a).length() / 2.0;
+        area += 0.5 * triangle::face_vector([a, b, c]).length();
     }
     (volume, area)
 }

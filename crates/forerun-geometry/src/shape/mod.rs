@@ -14,10 +14,12 @@ mod measure;
 mod mesh;
 mod mesh_draft;
 pub mod mesh_make;
+mod mesh_parts;
 mod mesh_ray;
 mod mesh_report;
 mod mesh_topology;
 mod reach;
+mod roots;
 mod triangle_list;
 mod triangle_tree;
 

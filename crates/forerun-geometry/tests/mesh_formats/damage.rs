@@ -1,4 +1,4 @@
-//! Damaged files of every format: a mesh or a message, never a panic, and no more memory than a small multiple of the file.
+//! Damaged files of every format: a mesh or a message, never a panic, and no more memory than a small multiple of the file; files that copy a lot.
 #![allow(unsafe_code, reason = "to count what is allocated is to be the allocator")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -7,6 +7,7 @@ use std::cell::Cell;
 use forerun_geometry::Vec3;
 use forerun_geometry::mesh_file::{ParseError, TriangleList, parse_gltf, parse_obj, parse_ply, parse_stl};
 use forerun_geometry::shape::{Mesh, MeshDraft, MeshOptions, mesh_make};
+use serde_json::json;
 
 use crate::writers::{Ply, embedded, glb, gltf, obj, ply, stl_binary, stl_text};
 
@@ -163,6 +164,41 @@ fn damaged_files_give_a_mesh_or_a_message() {
             "{name}: {parsed} read, {meshes} meshes, {refused} refused"
         );
     }
+}
+
+/// A document with one mesh of many parts, all alike, that many nodes use.
+fn copies(nodes: usize, parts: usize, strip: usize) -> Vec<u8> {
+    let (mut document, mut buffer) = gltf(&mesh_make::cuboid(Vec3::ONE).unwrap());
+    document["nodes"] = vec![json!({ "mesh": 0 }); nodes].into();
+    document["scenes"][0]["nodes"] = (0..nodes).collect();
+    let mut part = document["meshes"][0]["primitives"][0].clone();
+    if strip > 0 {
+        // One corner again and again makes no triangle.
+        let views = document["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({ "buffer": 0, "byteOffset": buffer.len(), "byteLength": strip }));
+        buffer.extend(vec![0; strip]);
+        let accessors = document["accessors"].as_array_mut().unwrap();
+        accessors.push(json!({ "bufferView": 2, "componentType": 5121, "count": strip, "type": "SCALAR" }));
+        document["buffers"][0]["byteLength"] = json!(buffer.len());
+        part["indices"] = json!(2);
+        part["mode"] = json!(5);
+    }
+    document["meshes"][0]["primitives"] = vec![part; parts].into();
+    glb((document, buffer))
+}
+
+#[test]
+fn what_nodes_copy_is_counted() {
+    let bytes = copies(200, 20, 0);
+    LARGEST.set(0);
+    let list = gltf_alone(&bytes).unwrap();
+    assert_eq!((list.vertices.len(), list.triangles.len()), (4000 * 8, 4000 * 12));
+    // Vectors double as they grow.
+    let largest = LARGEST.get();
+    assert!(largest <= 16 * bytes.len() + 2 * size_of_val(&*list.triangles), "{largest}");
+    // A megabyte, read again and again for nothing.
+    let refused = gltf_alone(&copies(100, 20, 1 << 20)).unwrap_err().to_string();
+    assert!(refused.contains("vertices and corners with all its copies"), "{refused}");
 }
 
 #[test]

@@ -177,7 +177,8 @@ fn small_interleaved_sparse_and_quantised_numbers_are_read() {
     assert_eq!(sparse.unwrap().vertices, [Vec3::ZERO, Vec3::X * 7.0, Vec3::Y * 8.0]);
 
     let quantised = with_primitive(primitive, |document, buffer| {
-        document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+        document["extensionsRequired"] =
+            json!(["KHR_mesh_quantization", "KHR_materials_unlit", "KHR_texture_transform"]);
         document["nodes"][0]["scale"] = json!([2.0, 2.0, 2.0]);
         let at = buffer.len();
         for x in [0_i16, 0, 0, 0, 32767, 0, 0, 0, -32768, 0, 32767, 0] {
@@ -238,6 +239,20 @@ fn errors_name_the_place_in_the_document() {
     says(
         &|d| d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]),
         "extensionsRequired: KHR_draco_mesh_compression is not read; export",
+    );
+    says(
+        &|d| d["extensionsRequired"] = json!(["KHR_materials_unlit", "EXT_mesh_gpu_instancing"]),
+        "extensionsRequired: EXT_mesh_gpu_instancing is not read; export the file without this extension",
+    );
+    says(
+        &|d| {
+            d["accessors"][0]["sparse"] = json!({
+                "count": 1,
+                "indices": { "bufferView": 0, "componentType": 5126 },
+                "values": { "bufferView": 0 },
+            });
+        },
+        "accessors[0]: sparse: indices must be whole",
     );
     says(&|d| d["meshes"] = json!([{ "primitives": [] }]), "the default scene has no triangles");
     says(&|d| d["nodes"] = json!({}), "line 1 column ");

@@ -2,9 +2,8 @@
 
 use forerun_geometry::Vec3;
 
-use super::parts::{cuboid, cylinder, ground, radians, sphere, turn};
-use crate::shape::BoxEntry;
-use crate::{BodyEntry, PartEntry, Scene, ShapeEntry};
+use super::parts::{box_part, cuboid, cylinder, ground, radians, sphere, turn};
+use crate::{BodyEntry, Scene, ShapeEntry};
 
 /// The frame at which these cases are judged.
 const FRAME: f32 = 1.0 / 240.0;
@@ -67,12 +66,7 @@ pub(super) fn a11a(_: u32) -> Scene {
 
 /// An L of two boxes.
 pub(super) fn a11b(_: u32) -> Scene {
-    let part = |half_extents, position| PartEntry {
-        shape: ShapeEntry::Box(BoxEntry { half_extents }),
-        position,
-        rotation: None,
-    };
-    let parts = vec![part([0.5, 0.05, 0.05], [0.0; 3]), part([0.05, 0.2, 0.05], [-0.45, 0.25, 0.0])];
+    let parts = vec![box_part([0.5, 0.05, 0.05], [0.0; 3]), box_part([0.05, 0.2, 0.05], [-0.45, 0.25, 0.0])];
     off_centre("a11b", BodyEntry::new(ShapeEntry::Compound(parts)))
 }
 

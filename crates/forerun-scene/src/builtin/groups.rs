@@ -4,11 +4,10 @@ use forerun_geometry::Vec3;
 
 use super::dissertation::{DOMINO_STEP, domino, tipped};
 use super::noise::Noise;
-use super::parts::{cube, cuboid, ground, mesh, sphere, turn, walls as pit};
-use super::piles::{centred, square_side};
+use super::parts::{box_part, cube, cuboid, ground, mesh, sphere, turn, walls as pit};
+use super::piles::{centred, cube_side, square_side};
 use crate::mesh::TorusEntry;
-use crate::shape::BoxEntry;
-use crate::{BodyEntry, MeshEntry, PartEntry, Scene, ShapeEntry};
+use crate::{BodyEntry, MeshEntry, Scene, ShapeEntry};
 
 /// Straight lines of dominoes, too far apart to meet; the first of each is tipped.
 pub(super) fn domino_lines(count: u32) -> Scene {
@@ -112,17 +111,12 @@ pub(super) fn meeting(_: u32) -> Scene {
     );
     scene.seconds = 10.0;
     scene.put(ground().surface(0.5, 0.0));
-    let part = |half_extents, position| PartEntry {
-        shape: ShapeEntry::Box(BoxEntry { half_extents }),
-        position,
-        rotation: None,
-    };
     let rim = [0.05, 0.15, 0.3];
     let edge = HALF_TRAY - 0.05;
     let parts = vec![
-        part([HALF_TRAY, 0.05, 0.3], [0.0; 3]),
-        part(rim, [edge, 0.2, 0.0]),
-        part(rim, [-edge, 0.2, 0.0]),
+        box_part([HALF_TRAY, 0.05, 0.3], [0.0; 3]),
+        box_part(rim, [edge, 0.2, 0.0]),
+        box_part(rim, [-edge, 0.2, 0.0]),
     ];
     let sliding = Vec3::X * SPEED;
     // Its front is 10 m from the stack.
@@ -190,10 +184,7 @@ pub(super) fn pile(count: u32) -> Scene {
     );
     scene.seconds = 20.0;
     // As wide as it is high, about: 10 x 10 a layer for 1000 boxes.
-    let mut side = 1;
-    while side * side * side < count {
-        side += 1;
-    }
+    let side = cube_side(count);
     scene.put(ground());
     pit(&mut scene, 0.5 * side as f32, 1.5 * side as f32);
     let mut noise = Noise::new(23);
@@ -228,10 +219,7 @@ pub(super) fn hail(count: u32) -> Scene {
         }
     }
     // Cells of a cubic lattice, one ball in each, so that none overlap.
-    let mut side = 1;
-    while side * side * side < count {
-        side += 1;
-    }
+    let side = cube_side(count);
     let pitch = (2.0 * HALF - 2.0 * RADIUS) / side as f32;
     let play = (0.5 * pitch - RADIUS).max(0.0);
     let mut noise = Noise::new(29);

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use forerun_geometry::{Quat, Vec3};
 
 use crate::shape::{BoxEntry, CylinderEntry, SphereEntry};
-use crate::{BodyEntry, KindEntry, RotationEntry, Scene, ShapeEntry};
+use crate::{BodyEntry, KindEntry, PartEntry, RotationEntry, Scene, ShapeEntry};
 
 impl BodyEntry {
     pub(super) fn at(mut self, position: Vec3) -> BodyEntry {
@@ -105,6 +105,11 @@ pub(super) fn cylinder(radius: f32, half_height: f32) -> BodyEntry {
 
 pub(super) fn mesh(name: &str) -> BodyEntry {
     BodyEntry::new(ShapeEntry::Mesh(name.to_owned()))
+}
+
+/// A box as a part of a compound, by half extents.
+pub(super) fn box_part(half_extents: [f32; 3], position: [f32; 3]) -> PartEntry {
+    PartEntry { shape: ShapeEntry::Box(BoxEntry { half_extents }), position, rotation: None }
 }
 
 /// Four fixed walls around a square of the ground.

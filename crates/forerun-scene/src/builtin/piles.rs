@@ -156,9 +156,7 @@ pub(super) fn tori(count: u32) -> Scene {
     let mut noise = Noise::new(11);
     for i in 0..count {
         let (layer, cell) = (i / 9, i % 9);
-        let x = 1.45 * centred(cell % 3, 3) + noise.about_zero(0.1);
-        let z = 1.45 * centred(cell / 3, 3) + noise.about_zero(0.1);
-        let place = Vec3::new(x, 1.0 + 1.5 * layer as f32, z);
+        let place = scattered(cell, (3, 1.45), &mut noise).with_y(1.0 + 1.5 * layer as f32);
         scene.put(mesh("torus").at(place).turned(noise.rotation()));
     }
     scene
@@ -199,6 +197,22 @@ pub(super) fn square_side(count: u32) -> u32 {
         side += 1;
     }
     side
+}
+
+/// Side of the smallest cube of cells that holds `count`.
+pub(super) fn cube_side(count: u32) -> u32 {
+    let mut side = 1;
+    while side * side * side < count {
+        side += 1;
+    }
+    side
+}
+
+/// The `i`th place, at y = 0, of a square with so many places a side, so far apart (metres), each moved by up to a decimetre either way.
+pub(super) fn scattered(i: u32, (side, apart): (u32, f32), noise: &mut Noise) -> Vec3 {
+    let x = apart * centred(i % side, side) + noise.about_zero(0.1);
+    let z = apart * centred(i / side, side) + noise.about_zero(0.1);
+    Vec3::new(x, 0.0, z)
 }
 
 /// The `i`th of `count` places one apart whose middle is 0.

@@ -34,7 +34,8 @@ pub struct MeshEntry {
     pub up: UpEntry,
     /// Wished distance between the nodes of its distance field, after scaling. Metres, above 0. Default an eighth of the smallest thickness or narrowest gap.
     pub cell: Option<f32>,
-    /// Whether it may have holes and edges: a terrain. Such a mesh has no inside and is for fixed and kinematic bodies only. Default false.
+    /// Whether it may have holes and edges, or face inwards: a terrain, a room. Such a mesh has no inside and is for fixed and kinematic bodies
+    /// only. One that is closed and faces outwards has an inside all the same. Default false.
     pub open: bool,
 }
 

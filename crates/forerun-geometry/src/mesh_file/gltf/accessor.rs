@@ -45,7 +45,7 @@ impl Data<'_> {
     /// Numbers of vertices.
     pub(super) fn indices(&self, accessor: usize) -> Result<Vec<u32>, ParseError> {
         let entry = self.accessor(accessor, "SCALAR")?;
-        if !matches!(entry.component_type, U8 | U16 | U32) {
+        if !counts(entry.component_type) {
             return Err(fail(accessor, "indices must be whole numbers without a sign"));
         }
         self.read(accessor, entry, |number| number as u32)
@@ -91,10 +91,14 @@ impl Data<'_> {
                 self.read_run(part.buffer_view, part.byte_offset, run, &|number| number)
                     .map_err(|m| fail(accessor, format!("sparse: {m}")))
             };
-            let at = part(&sparse.indices, 1, sparse.indices.component_type.unwrap_or_default())?;
+            let kind = sparse.indices.component_type.unwrap_or_default();
+            if !counts(kind) {
+                return Err(fail(accessor, "sparse: indices must be whole numbers without a sign"));
+            }
+            let at = part(&sparse.indices, 1, kind)?;
             let values = part(&sparse.values, width, entry.component_type)?;
             for (at, value) in at.into_iter().zip(values.chunks_exact(width)) {
-                // Whole and not negative: read from numbers of such a kind, or refused below.
+                // Whole and not negative, as their kind is.
                 let start = (at as usize).saturating_mul(width);
                 let Some(place) = numbers.get_mut(start..start.saturating_add(width)) else {
                     let message = format!("sparse: element {at} does not exist, there are {}", entry.count);
@@ -146,6 +150,11 @@ impl Data<'_> {
 
 fn fail(accessor: usize, message: impl Into<String>) -> ParseError {
     ParseError::new(format!("accessors[{accessor}]"), message)
+}
+
+/// Whether numbers of a kind are whole and have no sign.
+fn counts(component_type: u32) -> bool {
+    matches!(component_type, U8 | U16 | U32)
 }
 
 fn size_of_number(component_type: u32) -> Result<usize, String> {

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::count;
+use super::{count, larger};
 use crate::shape::{ShapeError, TriangleList, positive};
 
 /// Least and most columns of points round the axis. The corners of a hexagon are in every sixth part of them.
@@ -86,9 +86,14 @@ const PROFILE: [(f64, f64); 6] = [
 const CHAMFER: f64 = 0.1;
 
 impl Thread {
-    /// Shortest and greatest length that it is made in. Metres.
-    fn lengths(&self) -> (f32, f32) {
-        (self.pitch, PITCHES_MAX * self.pitch)
+    /// Whether it can be made so long.
+    fn check_length(&self, field: &'static str, length: f32) -> Result<(), ShapeError> {
+        let (least, most) = (self.pitch, PITCHES_MAX * self.pitch);
+        if (least..=most).contains(&length) {
+            return Ok(());
+        }
+        let message = format!("must be from one to a thousand pitches ({least} to {most} m), is {length}");
+        Err(ShapeError::new(field, message))
     }
 
     /// From crest to root. Metres.
@@ -110,7 +115,11 @@ impl Thread {
     fn check(&self) -> Result<(), ShapeError> {
         positive("radius", self.radius)?;
         positive("pitch", self.pitch)?;
-        within("pitch", self.pitch, (0.0, self.radius), "at most the radius of the thread")
+        if self.pitch <= self.radius {
+            return Ok(());
+        }
+        let message = format!("must be at most radius ({}), is {}", self.radius, self.pitch);
+        Err(ShapeError::new("pitch", message))
     }
 }
 
@@ -149,10 +158,9 @@ impl Bolt {
     pub fn check(&self) -> Result<(), ShapeError> {
         self.thread.check()?;
         columns(self.segments)?;
-        within("length", self.length, self.thread.lengths(), "from one to a thousand pitches")?;
+        self.thread.check_length("length", self.length)?;
         positive("head_height", self.head_height)?;
-        let least = self.thread.radius;
-        within("head_radius", self.head_radius, (least, f32::MAX), "above the radius of the thread")
+        larger(("head_radius", self.head_radius), ("radius", self.thread.radius))
     }
 
     /// Its surface. Both its crest and its root lie on the true thread at the columns, and within it between them.
@@ -187,10 +195,18 @@ impl Nut {
     pub fn check(&self) -> Result<(), ShapeError> {
         self.thread.check()?;
         columns(self.segments)?;
-        within("clearance", self.clearance, (0.0, f32::MAX), "0 or more")?;
-        within("height", self.height, self.thread.lengths(), "from one to a thousand pitches")?;
-        let least = (self.mouth() * self.chord()) as f32;
-        within("outer_radius", self.outer_radius, (least, f32::MAX), "outside of the thread and its chamfer")
+        if !(self.clearance >= 0.0 && self.clearance.is_finite()) {
+            let message = format!("must be a finite number of 0 or more, is {}", self.clearance);
+            return Err(ShapeError::new("clearance", message));
+        }
+        self.thread.check_length("height", self.height)?;
+        let mouth = (self.mouth() * self.chord()) as f32;
+        if self.outer_radius > mouth && self.outer_radius.is_finite() {
+            return Ok(());
+        }
+        let message =
+            format!("must be above that of the thread's mouths ({mouth}), is {}", self.outer_radius);
+        Err(ShapeError::new("outer_radius", message))
     }
 
     /// Radius at the mouths of the thread. Metres.
@@ -357,18 +373,6 @@ fn columns(segments: u32) -> Result<(), ShapeError> {
         return Ok(());
     }
     Err(ShapeError::new("segments", format!("must be a multiple of 6, is {segments}")))
-}
-
-fn within(
-    field: &'static str,
-    value: f32,
-    (low, high): (f32, f32),
-    expected: &str,
-) -> Result<(), ShapeError> {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(ShapeError::new(field, format!("must be {expected} (from {low} to {high} m), is {value}")))
 }
 
 #[cfg(test)]

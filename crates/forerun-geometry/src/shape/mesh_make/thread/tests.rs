@@ -114,3 +114,26 @@ fn refuse_what_cannot_be() {
     assert_eq!(Nut { outer_radius: 0.0052, ..nut }.check().unwrap_err().field, "outer_radius");
     assert_eq!(Nut { clearance: -0.1, ..nut }.check().unwrap_err().field, "clearance");
 }
+
+#[test]
+fn limits_are_those_that_are_documented() {
+    let says = |checked: Result<(), ShapeError>, field: &str, expected: &str| {
+        let error = checked.unwrap_err();
+        assert!(error.field == field && error.message.contains(expected), "{error:?}");
+    };
+    let (bolt, nut) = (any_bolt(Grip::Round), any_nut(Grip::Round));
+    assert!(bolt.check().is_ok() && nut.check().is_ok());
+    says(Bolt { head_radius: 0.005, ..bolt }.check(), "head_radius", "above radius (0.005), is 0.005");
+    says(Bolt { head_radius: f32::INFINITY, ..bolt }.check(), "head_radius", "finite");
+    says(
+        Bolt { length: 0.001, ..bolt }.check(),
+        "length",
+        "from one to a thousand pitches (0.0015 to 1.5 m)",
+    );
+    let mouth = (nut.mouth() * nut.chord()) as f32;
+    says(Nut { outer_radius: mouth, ..nut }.check(), "outer_radius", "above that of the thread's mouths");
+    says(Nut { clearance: -0.1, ..nut }.check(), "clearance", "0 or more");
+    says(Nut { height: f32::NAN, ..nut }.check(), "height", "pitches");
+    let coarse = Thread { radius: 0.005, pitch: 0.006 };
+    says(Bolt { thread: coarse, ..bolt }.check(), "pitch", "at most radius (0.005), is 0.006");
+}
