@@ -9,9 +9,8 @@ use crate::bounds::Prospect;
 use crate::narrow_phase::{Contact, NarrowPhase, Outlook};
 use crate::{BodyState, Environment, Member};
 
-/// Contacts hold while the pair moves by no more than this part of the contact margin, ...
-const MARGIN_PART: f32 = 0.5;
-/// ... but never while it moves by more than this part of the thinner body's half thickness.
+/// Contacts hold while the pair moves by no more than the contact margin, but never while it moves by more than this part of the thinner body's half
+/// thickness.
 const THICKNESS_PART: f32 = 0.25;
 
 /// The contacts of some pairs of bodies.
@@ -129,7 +128,7 @@ impl<'a> Prospects<'a> {
     fn room(&self, (i, j): (u32, u32)) -> f32 {
         let half_thickness = |i: u32| self.members[i as usize].body.half_thickness;
         let thickness = half_thickness(i).min(half_thickness(j));
-        (MARGIN_PART * self.contact_margin_m).min(THICKNESS_PART * thickness)
+        self.contact_margin_m.min(THICKNESS_PART * thickness)
     }
 }
 

@@ -35,6 +35,9 @@ pub struct Field {
 /// The bits of a mask that is set in all lanes.
 const ALL: u32 = (1 << LANES) - 1;
 
+/// Neighbours of a point in a grid: two along each axis.
+const SIDES: usize = 6;
+
 /// Where eight points are in the grid.
 struct Place<F> {
     /// Index of the lowest node of the cell.
@@ -104,21 +107,42 @@ impl Field {
     /// Gradient by central differences over a cell: smooth where the trilinear one jumps from cell to cell.
     #[must_use]
     pub fn smooth_gradient(&self, point: Vec3) -> Vec3 {
-        lane(&self.differences::<Portable>(splat(point)), 0)
+        lane(&self.differences::<Portable>(splat(point), 1), 0)
     }
 
-    /// [`Field::smooth_gradient`] at eight points.
+    /// [`Field::smooth_gradient`] at the first `count` of eight points; what it is at others says nothing.
+    #[allow(clippy::needless_range_loop, reason = "several short arrays are walked side by side")]
     #[inline(always)]
-    pub(crate) fn differences<F: Lanes>(&self, points: V8<F>) -> V8<F> {
-        let (step, cell, none) = (splat::<F>(self.cell * 0.5), splat::<F>(self.cell), F::zero());
-        let mut along = [none; 3];
-        for (axis, half) in [step.x, step.y, step.z].into_iter().enumerate() {
-            let mut steps = [none; 3];
-            steps[axis] = half;
-            let step = V8 { x: steps[0], y: steps[1], z: steps[2] };
-            along[axis] = self.look_up(points + step).0 - self.look_up(points - step).0;
+    pub(crate) fn differences<F: Lanes>(&self, points: V8<F>, count: usize) -> V8<F> {
+        // The neighbours of all points on one side, then on the next, without gaps: few points take few look-ups.
+        let numbers = [points.x.to_array(), points.y.to_array(), points.z.to_array()];
+        let mut around = [[[0.0; LANES]; 3]; SIDES];
+        for side in 0..SIDES {
+            let axis = side / 2;
+            let step = self.cell[axis] * if side % 2 == 0 { 0.5 } else { -0.5 };
+            for i in 0..count {
+                let at = side * count + i;
+                let neighbour = &mut around[at / LANES];
+                for k in 0..3 {
+                    neighbour[k][at % LANES] = if k == axis { numbers[k][i] + step } else { numbers[k][i] };
+                }
+            }
         }
-        V8 { x: along[0] / cell.x, y: along[1] / cell.y, z: along[2] / cell.z }
+        let mut distances = [[0.0; LANES]; SIDES];
+        for k in 0..(SIDES * count).div_ceil(LANES) {
+            distances[k] = self.look_up::<F>(V8::from_arrays(around[k])).0.to_array();
+        }
+        let mut along = [[0.0; LANES]; 3];
+        for axis in 0..3 {
+            for i in 0..count {
+                let (more, less) = (2 * axis * count + i, (2 * axis + 1) * count + i);
+                along[axis][i] =
+                    distances[more / LANES][more % LANES] - distances[less / LANES][less % LANES];
+            }
+        }
+        let cell = splat::<F>(self.cell);
+        let along = V8::<F>::from_arrays(along);
+        V8 { x: along.x / cell.x, y: along.y / cell.y, z: along.z / cell.z }
     }
 
     /// From the lowest node of a cell to the rows of nodes along its four edges in the direction of x.
@@ -189,21 +213,16 @@ impl LookUp for Field {
     fn look_up_near<F: Lanes>(&self, points: V8<F>, asked: u32, limit: f32) -> Option<(F, V8<F>)> {
         let place = self.place(points);
         let cell = self.cell_at(&place);
-        if place.inside().bits() == ALL {
-            let near = cell.distance.lt(F::splat(limit)).bits() & asked != 0;
-            return if near { Some((cell.distance, cell.gradient(self, &place))) } else { None };
+        if cell.lower_bound(&place).lt(F::splat(limit)).bits() & asked == 0 {
+            return None;
         }
         Some(cell.answer(&place, cell.gradient(self, &place)))
     }
 
-    /// Beyond the grid's box, with o the offset from its nearest point q: the surface lies inside the box, which is
-    /// convex, so no point of it is nearer than the square root of o² + phi(q)².
     #[inline(always)]
     fn lower_bound<F: Lanes>(&self, points: V8<F>) -> F {
         let place = self.place(points);
-        let distance = self.cell_at(&place).distance;
-        let positive = distance.max(F::zero());
-        place.inside().select(distance, (place.offset.dot(place.offset) + positive * positive).sqrt())
+        self.cell_at(&place).lower_bound(&place)
     }
 }
 
@@ -239,6 +258,15 @@ impl<F: Lanes> Cells<F> {
         let slope = splat::<F>(Vec3::splat(field.scale) / field.cell);
         let gradient = V8 { x: x0 + fz * (x1 - x0), y: s0 + fz * (s1 - s0), z: z1 - z0 }.times(slope);
         if field.blocks.is_some() { gradient * place.step } else { gradient }
+    }
+
+    /// Beyond the grid's box, with o the offset from its nearest point q: the surface lies inside the box, which is
+    /// convex, so no point of it is nearer than the square root of o² + phi(q)².
+    #[inline(always)]
+    fn lower_bound(&self, place: &Place<F>) -> F {
+        let positive = self.distance.max(F::zero());
+        let beyond = (place.offset.dot(place.offset) + positive * positive).sqrt();
+        place.inside().select(self.distance, beyond)
     }
 
     /// Distance and gradient, beyond the grid's box too.

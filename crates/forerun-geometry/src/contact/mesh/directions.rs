@@ -74,11 +74,40 @@ pub(super) struct Direction<'a> {
     pub(super) margin: f32,
 }
 
+impl Primitives {
+    /// Works out the points and planes of the one of two shapes that is no mesh. `margin`: metres.
+    fn fill(&mut self, first: &Placed, second: &Placed, margin: f32) {
+        self.planes.clear();
+        self.points.clear();
+        for (sampled, field) in [(first, second), (second, first)] {
+            if let Shape::Hull(hull) = sampled.shape {
+                hull_planes(hull, &mut self.planes);
+            }
+            if let (shape, Shape::Mesh(mesh)) = (sampled.shape, field.shape) {
+                let surface = mesh_surface(mesh, 2.0 * shape.half_thickness());
+                let to_field = field.pose.inverse() * sampled.pose;
+                let region = region_of(mesh, &to_field.inverse(), margin);
+                let gradient = |p: Vec3| {
+                    let (_, g) = surface.exact(to_field.transform_point(p), None, &mut None);
+                    to_field.inverse_transform_vector(g)
+                };
+                self.points.fill(shape, &region, gradient);
+            }
+        }
+    }
+}
+
 impl Direction<'_> {
     /// The same for what is nearer than half the thickness of the thinner shape, whatever the motion.
     pub(super) fn close(&self) -> Self {
         let half_thickness = self.inset / INSET_PART;
         Direction { margin: self.margin.min(self.near + half_thickness), ..*self }
+    }
+
+    /// Whether all points count that are near enough, however they move.
+    #[inline(always)]
+    pub(super) fn is_slow(&self) -> bool {
+        self.margin <= self.near
     }
 
     /// What turns the field's gradient into the normal from the first shape to the second: it leads away from the shape whose field it is.
@@ -117,6 +146,11 @@ impl Going {
         splat::<F>(self.spin).cross(points) + splat(self.drift)
     }
 
+    /// Radians.
+    pub(super) fn turn(&self) -> f32 {
+        self.turn
+    }
+
     /// How far points of balls move at most: no further than the centre, and what turning about it adds. Metres.
     #[inline(always)]
     pub(super) fn at_most<F: Lanes>(&self, centres: V8<F>, radii: F) -> F {
@@ -141,43 +175,35 @@ pub(super) fn between<'a>(
     margin: f32,
     memory: &'a mut Primitives,
 ) -> [Option<Direction<'a>>; 2] {
-    memory.planes.clear();
-    for shape in [first.shape, second.shape] {
-        if let Shape::Hull(hull) = shape {
-            hull_planes(hull, &mut memory.planes);
-        }
-    }
-    memory.points.clear();
-    for (sampled, field) in [(first, second), (second, first)] {
-        if let (shape, Shape::Mesh(mesh)) = (sampled.shape, field.shape) {
-            let surface = mesh_surface(mesh, 2.0 * shape.half_thickness());
-            let to_field = field.pose.inverse() * sampled.pose;
-            let region = region_of(mesh, &to_field.inverse(), margin);
-            let gradient = |p: Vec3| {
-                let (_, g) = surface.exact(to_field.transform_point(p), None, &mut None);
-                to_field.inverse_transform_vector(g)
-            };
-            memory.points.fill(shape, &region, gradient);
-        }
-    }
     let axes = [first.pose.axes(), second.pose.axes()];
-    let there = direction([first, second], axes, (Way::There, margin), memory);
-    if let (Some(there), Shape::Mesh(first), Shape::Mesh(second)) = (&there, first.shape, second.shape)
-        && is_beyond(&there, first, second, margin)
-    {
-        return [None, None];
+    if let (Shape::Mesh(a), Shape::Mesh(b)) = (first.shape, second.shape) {
+        let into = axes[1].transpose();
+        let place = into * (first.pose.position - second.pose.position);
+        if are_apart(&(into * axes[0]), place, [a, b], margin) {
+            return [None, None];
+        }
+    } else {
+        memory.fill(first, second, margin);
     }
-    [there, direction([second, first], [axes[1], axes[0]], (Way::Back, margin), memory)]
+    [
+        direction([first, second], axes, (Way::There, margin), memory),
+        direction([second, first], [axes[1], axes[0]], (Way::Back, margin), memory),
+    ]
 }
 
-/// Whether the ball around the mesh whose points are looked up is farther than `margin` from the other's box. Metres.
-fn is_beyond(there: &Direction, sampled: &Mesh, other: &Mesh, margin: f32) -> bool {
-    let (ball, bounds) = (sampled.ball(), other.bounds());
-    let place = there.axes * ball.centre + there.origin;
-    let reach = ball.radius + margin;
-    let offset = (bounds.min - place).max(place - bounds.max).max(Vec3::ZERO);
+/// Whether the boxes of two meshes, the first turned by `axes` and moved by `origin` in the frame of the second, are farther apart than `margin` along
+/// an axis of either. Metres.
+fn are_apart(axes: &Mat3, origin: Vec3, [first, second]: [&Mesh; 2], margin: f32) -> bool {
+    let [(c1, h1), (c2, h2)] = [first, second].map(|mesh| {
+        let b = mesh.bounds();
+        ((b.min + b.max) * 0.5, (b.max - b.min) * 0.5)
+    });
     // A little more, for what rounding may lose.
-    offset.length_squared() > reach * reach * 1.0001
+    let margin = Vec3::splat(margin * 1.0001 + 1e-6);
+    let between = *axes * c1 + origin - c2;
+    let sizes = Mat3::from_cols(axes.x_axis.abs(), axes.y_axis.abs(), axes.z_axis.abs());
+    (between.abs() - (sizes * h1 + h2)).cmpgt(margin).any()
+        || ((axes.transpose() * between).abs() - (sizes.transpose() * h2 + h1)).cmpgt(margin).any()
 }
 
 /// Points of `sampled` in the field of `field`, whose axes in the world are given; none if `sampled` has no points.

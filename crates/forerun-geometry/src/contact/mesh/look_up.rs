@@ -177,12 +177,14 @@ impl Direction<'_> {
         let Answer { distance, gradient, beside } = answer;
         let normal = normalized(gradient);
         let distance = distance + normal.dot(back);
-        let closing = self.closing_at(eight.points, normal);
         let facing = normal.dot(eight.outwards);
         let near = distance.lt(F::splat(self.margin));
-        let found = facing.lt(eight.facing_max)
-            & (distance + closing).lt(F::splat(self.near))
-            & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
+        let mut found =
+            facing.lt(eight.facing_max) & F::splat(GRADIENT_SQUARED_MIN).lt(gradient.dot(gradient));
+        if !self.is_slow() {
+            let closing = self.closing_at(eight.points, normal);
+            found = found & (distance + closing).lt(F::splat(self.near));
+        }
         let well = facing.lt(F::splat(FACING_WELL)).bits();
         let doubtful =
             (near & distance.lt(F::splat(TOUCH_PART * self.near))).bits() & asked & (beside | !well);
@@ -222,8 +224,22 @@ impl Direction<'_> {
     pub(super) fn near<F: Lanes, S: LookUp>(&self, surface: &S, spheres: &Spheres) -> u32 {
         let radii = F::from_array(spheres.radius.to_array());
         let centres = transformed(spheres.centre.form::<F>(), &self.axes, self.origin);
-        let near = self.reach(centres, radii) + F::splat(self.blur_depth);
-        (surface.lower_bound(centres) - radii).lt(near).bits()
+        let (middles, way) = if self.is_slow() { (centres, F::zero()) } else { self.swept(centres, radii) };
+        let reach = radii + way + F::splat(self.near + self.blur_depth);
+        surface.lower_bound(middles).lt(reach).bits()
+    }
+
+    /// Where the middles of balls are halfway, and how far the balls may be from there. Metres.
+    ///
+    /// Either body may be stopped by others: seen from the surface, a ball ends up anywhere in the parallelogram of its own motion and, backwards,
+    /// that of the surface.
+    #[inline(always)]
+    fn swept<F: Lanes>(&self, centres: V8<F>, radii: F) -> (V8<F>, F) {
+        let (goes, comes) = (self.goes.at(centres), self.comes.at(centres));
+        let (relative, sum) = (goes - comes, goes + comes);
+        let diagonal = relative.dot(relative).max(sum.dot(sum)).sqrt();
+        let turned = radii * F::splat(self.goes.turn() + self.comes.turn());
+        (centres + relative * F::splat(0.5), diagonal * F::splat(0.5) + turned)
     }
 
     /// How near to the surface points of balls must be to count. Metres.
@@ -243,7 +259,7 @@ impl Direction<'_> {
         let (away, along) = (-normals.dot(comes), normals.dot(goes));
         let closing =
             along.min(F::zero()) + away.min(F::zero()) - relative.dot(relative) * F::splat(self.bend);
-        // No nearer than both together go: what is culled by that counts for nobody.
+        // No nearer than both together go.
         closing.max(-(goes.length() + comes.length()))
     }
 

@@ -53,7 +53,7 @@ fn smooth_lanes<F: Lanes>(field: &Field, direction: &Direction, rough: &[u32], c
         }
         let [px, py, pz, nx, ny, nz, separation] = numbers;
         let (points, rough_normals) = (V8::<F>::from_arrays([px, py, pz]), V8::from_arrays([nx, ny, nz]));
-        let gradients = field.differences(points);
+        let gradients = field.differences(points, chunk.len());
         let lengths = gradients.length();
         let gradients = gradients * (F::one() / lengths);
         let normals = transformed(gradients, &direction.field_axes, Vec3::ZERO) * F::splat(direction.sign());
