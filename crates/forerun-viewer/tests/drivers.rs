@@ -115,6 +115,20 @@ fn a_pause_holds_the_traditional_driver_too() {
 }
 
 #[test]
+fn by_the_clock_of_a_film_a_slow_step_is_as_slow_as_it_was() {
+    let mut user = User::of(BOXES);
+    user.key(Key::K, Modifiers::default());
+    user.session.slow_down_s = 0.1;
+    let mut times = Vec::new();
+    for _ in 0..30 {
+        user.picture(Vec::new());
+        times.push(user.play().picture.time_s);
+    }
+    times.dedup();
+    assert!((2..=7).contains(&times.len()), "half a second of pictures, and steps of a tenth: {times:?}");
+}
+
+#[test]
 fn a_value_that_is_dragged_is_one_command_and_one_step() {
     let mut user = User::of(BOXES);
     user.pictures(4);
