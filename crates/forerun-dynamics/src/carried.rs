@@ -9,9 +9,9 @@ use crate::bounds::Prospect;
 use crate::narrow_phase::{Contact, NarrowPhase, Outlook};
 use crate::{BodyState, Environment, Member};
 
-/// Contacts hold while the pair moves by no more than the contact margin, but never while it moves by more than this part of the thinner body's half
-/// thickness.
-const THICKNESS_PART: f32 = 0.25;
+/// Contacts hold while the pair moves by no more than this part of the thinner body's half thickness: those that were found for the whole frame so far,
+/// those of a slice no farther than the contact margin.
+const THICKNESS_PART: f32 = 0.2;
 
 /// The contacts of some pairs of bodies.
 #[derive(Debug, Default)]
@@ -33,7 +33,7 @@ impl Carried {
         environment: &Environment,
     ) -> Carried {
         let prospects = Prospects::new(members, environment);
-        let rooms = pairs.iter().map(|pair| prospects.room(*pair)).collect();
+        let rooms = pairs.iter().map(|pair| prospects.most_room(*pair)).collect();
         Carried { pairs, rooms, contacts }
     }
 
@@ -46,7 +46,7 @@ impl Carried {
             // Not "above": what is not a number is looked at again.
             let covered = way <= *room;
             if !covered {
-                *room = prospects.room(pair);
+                *room = prospects.most_room(pair).min(environment.settings.contact_margin_m);
                 stale.push(pair);
             }
         }
@@ -109,13 +109,12 @@ fn moved((before, after): (&BodyState, &BodyState), point: Vec3) -> Vec3 {
 struct Prospects<'a> {
     members: &'a [Member<'a>],
     of: Vec<Prospect>,
-    contact_margin_m: f32,
 }
 
 impl<'a> Prospects<'a> {
     fn new(members: &'a [Member<'a>], environment: &Environment) -> Prospects<'a> {
         let of = members.iter().map(|m| Prospect::new(m.body, &m.state, environment)).collect();
-        Prospects { members, of, contact_margin_m: environment.settings.contact_margin_m }
+        Prospects { members, of }
     }
 
     /// How far the bodies of a pair are expected to move against each other. Metres.
@@ -124,11 +123,10 @@ impl<'a> Prospects<'a> {
         (a.motion.linear - b.motion.linear).length() + a.sway_m + b.sway_m
     }
 
-    /// How far they may move, in whatever direction, while contacts hold. Metres.
-    fn room(&self, (i, j): (u32, u32)) -> f32 {
+    /// How far they may move at most, in whatever direction, while contacts hold. Metres.
+    fn most_room(&self, (i, j): (u32, u32)) -> f32 {
         let half_thickness = |i: u32| self.members[i as usize].body.half_thickness;
-        let thickness = half_thickness(i).min(half_thickness(j));
-        self.contact_margin_m.min(THICKNESS_PART * thickness)
+        THICKNESS_PART * half_thickness(i).min(half_thickness(j))
     }
 }
 

@@ -69,7 +69,7 @@ impl<'a> Slicer<'a> {
                 if let Some(close_up) = &mut run.close_up {
                     close_up.slice = slice;
                 }
-                batches = self.slice(&mut parts, slice, batches, run);
+                batches = self.slice(&mut parts, slice + 1 == self.count, batches, run);
             }
         }
         run.too_deep.sort_unstable();
@@ -204,16 +204,13 @@ impl<'a> Slicer<'a> {
     fn slice<'b>(
         &self,
         parts: &mut [Part<'a>],
-        slice: u32,
+        last: bool,
         batches: Vec<Batch<'b>>,
         run: &mut Run,
     ) -> Vec<Batch<'b>> {
         let mut environment = *self.environment;
         environment.settings.frame_seconds /= self.count as f32;
-        // The first slice begins where the contacts of the frame were found.
-        if slice > 0 {
-            parts.par_iter_mut().for_each(|part| part.carried.look(&part.members, &environment));
-        }
+        parts.par_iter_mut().for_each(|part| part.carried.look(&part.members, &environment));
         let found: Vec<Vec<Contact>> =
             parts.iter_mut().map(|part| std::mem::take(&mut part.carried.contacts)).collect();
         let mut batches: Vec<Batch> = batches.into_iter().map(Batch::emptied).collect();
@@ -238,7 +235,7 @@ impl<'a> Slicer<'a> {
             }
             part.carried.follow(&part.members, &next);
             part.members.iter_mut().zip(&next).for_each(|(member, next)| member.state = *next);
-            if slice + 1 == self.count {
+            if last {
                 self.keep(batch, run);
             }
             self.find_too_deep(batch, run);
