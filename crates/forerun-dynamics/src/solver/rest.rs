@@ -45,9 +45,9 @@ const TURNS: f32 = 2.0;
 /// What goes on its way changes its velocity by less than this part of it in a frame: uniform acceleration does after eight frames.
 const UNSTEADY: f32 = 0.125;
 
-/// So many quiet frames are taken back by one in which a body seems to go on its way: what does so in more than every fifth frame does not come to rest. A
-/// ring that leans on another rocks by 0.1 mm, 5 times a second, and the middle of each swing is steady; taken back altogether it never rests.
-const SETBACK: u32 = 4;
+/// So many quiet frames are taken back by one in which a body seems to go on its way: what does so in more than every third frame does not come to rest. A
+/// ring that leans on another rocks by 0.1 mm, three times a second, and the middle of each swing is steady; taken back altogether it never rests.
+const SETBACK: u32 = 2;
 
 /// What the end of a frame needs to know of its contacts, and of who drives whom.
 pub(crate) struct Resting<'a> {
