@@ -1,6 +1,7 @@
 //! Validate: analytic cases and measurements from the literature, as figures with their limits.
 
 mod cases;
+mod facets;
 mod gauge;
 mod known_misses;
 mod lab;

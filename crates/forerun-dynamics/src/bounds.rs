@@ -5,6 +5,7 @@
 
 use forerun_geometry::{Aabb, Motion, Pose, Vec3};
 
+use crate::halfway::Halfway;
 use crate::solver::{pull, times_inverse_inertia};
 use crate::{Body, BodyKind, BodyState, Environment};
 
@@ -19,8 +20,10 @@ const REACH_MAX_RADII: f32 = 16.0;
 /// How a body is expected to go through the frame if nothing is in the way: all that collision detection asks of its state.
 #[derive(Clone, Copy, Debug)]
 pub struct Prospect {
-    /// Where its shape is at the start of the frame.
+    /// Where its shape is looked at: halfway, if it moves.
     pub pose: Pose,
+    /// How it is to get there from the start of the frame.
+    pub halfway: Halfway,
     /// The motion that springs, forces, torques and its velocity give it.
     pub motion: Motion,
     /// How far its surface may move by rotation. Metres.
@@ -41,7 +44,7 @@ impl Prospect {
         if body.kind == BodyKind::Fixed {
             let motion = Motion { linear: Vec3::ZERO, angular: Vec3::ZERO, about: state.position };
             let (min, max) = (now.min - Vec3::splat(margin), now.max + Vec3::splat(margin));
-            return Prospect { pose, motion, sway_m: 0.0, bound: Aabb { min, max } };
+            return Prospect { pose, halfway: Halfway::NONE, motion, sway_m: 0.0, bound: Aabb { min, max } };
         }
         let motion = motion(body, state, environment);
         let turn = motion.angular.length();
@@ -54,7 +57,9 @@ impl Prospect {
             min: now.min + step.min(Vec3::ZERO) - Vec3::splat(reach),
             max: now.max + step.max(Vec3::ZERO) + Vec3::splat(reach),
         };
-        Prospect { pose, motion, sway_m: spin(turn), bound }
+        let halfway = Halfway::of(body, state, environment);
+        let pose = if halfway.is_none() { pose } else { body.own_pose(&halfway.state(state)) };
+        Prospect { pose, halfway, motion, sway_m: spin(turn), bound }
     }
 }
 

@@ -13,6 +13,7 @@ pub mod broad_phase;
 mod carried;
 mod close_up;
 pub mod detection;
+pub mod halfway;
 pub mod inspect;
 pub mod meter;
 pub mod narrow_phase;

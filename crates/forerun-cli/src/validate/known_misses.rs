@@ -60,9 +60,6 @@ const FACETS_BOUNCE: &str =
 const ROUNDS: &str = "30000 roundings of the stored state next to a separatrix";
 const FROZEN_ARMS: &str = "the arms of a contact are those of the frame's beginning: what goes round drifts outwards by half the square of its turn \
      times its radius, every frame";
-const FROZEN_DIRECTIONS: &str = "the directions of a contact are those of the frame's beginning, and n substeps follow gravity along them: what swings at ω gains \
-     (1 - 1/n) ω² dt / 2 of its energy a second (a point on a rod, stepped so: 3.4 and 1.4 fold in 20 s); directions of (1 - 1/n) / 2 frames later \
-     would keep it";
 const TWO_MANIFOLDS: &str = "the eight points of a mesh contact are two manifolds with a friction each, centimetres apart on a surface as flat as this: \
      both stick, and nothing spins (a hull of the same corners keeps a third of its spin for 1 s)";
 const RESTS_DEEP: &str = "comes to rest before the overlap that it landed with is gone: up to 10 mm may rest";
@@ -80,9 +77,9 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("block_on_slope", "(c) 1/60: slip of the rider, m", 6.183, TIPS),
     miss("block_on_slope", "(c) 1/60: hop, m", 0.6357, TIPS),
     miss("block_on_slope", "(c) 1/60: tilt, degrees", 179.1, TIPS),
-    miss("block_on_slope", "(c) 1/240: worst stop point, part of the way", 0.02804, TIPS),
-    miss("block_on_slope", "(c) 1/240: spread of the stop points, part of the way", 0.0278, TIPS),
-    miss("block_on_slope", "(c) 1/240: slip of the rider, m", 4.851, TIPS),
+    miss("block_on_slope", "(c) 1/240: worst stop point, part of the way", 0.0456, TIPS),
+    miss("block_on_slope", "(c) 1/240: spread of the stop points, part of the way", 0.04537, TIPS),
+    miss("block_on_slope", "(c) 1/240: slip of the rider, m", 11.27, TIPS),
     miss("block_on_slope", "(c) 1/240: hop, m", 0.6369, TIPS),
     miss("block_on_slope", "(c) 1/240: tilt, degrees", 180.0, TIPS),
     miss("block_on_slope", "(c) 1/1000: worst stop point, part of the way", 0.03773, TIPS),
@@ -93,7 +90,6 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("rolling_plate", "at 60°: the same against the target, m²/s²", 2.019e-06, ROUNDS_PLATE),
     miss("rolling_down", "mesh sphere, 4.5°, 1/240: fall off, part", 0.181, FACETS),
     miss("rolling_down", "mesh sphere, 9°, 1/240: fall off, part", 0.1533, FACETS),
-    miss("rolling_down", "mesh sphere, 9°, 1/240: slip, part", 0.02138, FACETS),
     miss("rolling_down", "mesh sphere, 18°, 1/240: fall off, part", 0.1062, FACETS),
     miss("rolling_down", "mesh sphere, 18°, 1/240: slip, part", 0.04932, FACETS),
     miss("friction_directions", "(b) drift of the centre, m", 0.06438, FROZEN_ARMS),
@@ -103,8 +99,6 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("spinning_ball", "mesh sphere, friction 0.05, 1/240: rebound off, part", 0.05982, FACETS_BOUNCE),
     miss("rattleback", "-5 rad/s: time of the reversal, s", 0.75, TWO_MANIFOLDS),
     miss("rattleback", "5 rad/s: least spin up to 4 s, rad/s", -0.00003196, TWO_MANIFOLDS),
-    miss("swing", "1/60: most growth of the energy in 20 s, part", 2.671, FROZEN_DIRECTIONS),
-    miss("swing", "1/240: most growth of the energy in 20 s, part", 0.4141, FROZEN_DIRECTIONS),
     miss("turntable", "friction 0.1, 1/60: spin at which it has slipped by 1 mm, rad/s", 0.4983, FROZEN_ARMS),
     miss("turntable", "friction 0.5, 1/60: spin at which it has slipped by 1 mm, rad/s", 0.4983, FROZEN_ARMS),
     miss("turntable", "friction 1, 1/60: spin at which it has slipped by 1 mm, rad/s", 0.4983, FROZEN_ARMS),
@@ -114,11 +108,9 @@ pub(crate) const KNOWN_MISSES: &[Miss] = &[
     miss("turntable", "friction 0.5, 1/240: creep in 20 s at 1.6 rad/s, m", 0.002272, FROZEN_ARMS),
     miss("towers", "(b) 30 layers of planks: deepest overlap at the end, m", 0.002201, RESTS_DEEP),
     miss("card_house", "1/240: fastest card ever, m/s", 0.5723, GAPS),
-    miss("arch", "hulls: most slip between two neighbours, m", 0.07289, OVERLOADED),
     miss("arch", "meshes: most slip between two neighbours, m", 0.1305, OVERLOADED),
     miss("plank", "1/60: deepest overlap at the impact, m", 0.4834, FAST),
     miss("plank", "1/60: deepest overlap otherwise, m", 0.09379, FAST),
-    miss("rings", "100 rings: deepest overlap at rest, part of the tube's radius", 0.05609, FACETS_INSIDE),
     miss(
         "rings",
         "100 rings: 99th percentile of overlaps at rest, part of the tube's radius",

@@ -190,6 +190,7 @@ impl<'a> Batch<'a> {
             members: &self.members,
             contacts,
             graph: &self.graph,
+            centres: &self.bodies.centres,
             environment: &self.environment,
             substep_seconds: self.substep_seconds(),
         }

@@ -12,12 +12,12 @@ use crate::scratch::fill;
 /// not move and that nobody reads, then rows that fill the last eight.
 #[derive(Debug, Default)]
 pub(crate) struct Bodies {
-    /// Centre of mass (3), square root of the inverse mass, of the inverse inertia (3), 1 if impulses move the body. Kinematic bodies have roots of 1, so
+    /// Centre of mass where the contacts are looked at (3), square root of the inverse mass, of the inverse inertia (3), 1 if impulses move the body. Kinematic bodies have roots of 1, so
     /// that their velocity can be read; fixed ones of 0.
     pub(crate) centres: Vec<Row>,
     /// First and second principal axis in the world (3 + 3).
     pub(crate) axes: Vec<Row>,
-    /// Static and kinetic friction, restitution, half thickness, inverse mass.
+    /// Static and kinetic friction, restitution, half thickness, inverse mass; how far the centre comes to where the contacts are looked at (3).
     pub(crate) surfaces: Vec<Row>,
     /// Mass-scaled change of velocity by gravity, forces and torques in a substep.
     pub(crate) kicks: Vec<Row>,

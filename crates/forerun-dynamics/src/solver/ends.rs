@@ -22,8 +22,10 @@ pub(super) struct End<F> {
     pub(super) restitution: F,
     pub(super) half_thickness: F,
     pub(super) inverse_mass: F,
+    /// How far the centre of mass comes to where the contacts are looked at.
+    shift: V8<F>,
     /// By how much a kinematic body turns in a substep; zero for others.
-    pub(super) turn: V8<F>,
+    turn: V8<F>,
 }
 
 /// Both bodies of each contact.
@@ -45,7 +47,7 @@ impl<F: Lanes> End<F> {
     pub(super) fn gather(bodies: &Bodies, index: &[u32; LANES], substep_seconds: f32) -> Self {
         let [x, y, z, scale, ix, iy, iz, answers] = F::gather(&bodies.centres, index);
         let [ux, uy, uz, vx, vy, vz, ..] = F::gather(&bodies.axes, index);
-        let [static_friction, friction, restitution, half_thickness, inverse_mass, ..] =
+        let [static_friction, friction, restitution, half_thickness, inverse_mass, sx, sy, sz] =
             F::gather(&bodies.surfaces, index);
         let (u, v) = (V8 { x: ux, y: uy, z: uz }, V8 { x: vx, y: vy, z: vz });
         let axes = [u, v, u.cross(v)];
@@ -67,6 +69,7 @@ impl<F: Lanes> End<F> {
             restitution,
             half_thickness,
             inverse_mass,
+            shift: V8 { x: sx, y: sy, z: sz },
             turn,
         }
     }
@@ -77,23 +80,31 @@ impl<F: Lanes> End<F> {
         V8 { x: self.axes[0].dot(w), y: self.axes[1].dot(w), z: self.axes[2].dot(w) }.times(self.inertia)
     }
 
+    /// What the rows know of this body of a contact with `other`.
     #[inline(always)]
-    pub(super) fn side(&self, centre: V8<F>, axes: &[V8<F>; 3]) -> Side<F> {
-        let arm = centre - self.position;
+    pub(super) fn side(&self, other: &End<F>, centre: V8<F>, axes: &[V8<F>; 3]) -> Side<F> {
+        let arm = self.arm(other, centre);
         Side {
             scale: self.scale,
             offset: along(axes, arm + self.turn.cross(arm) * F::splat(0.5)),
             turns: [self.scaled(axes[0]), self.scaled(axes[1]), self.scaled(axes[2])],
         }
     }
-}
 
-impl<F: Lanes> End<F> {
     /// By how much the arm of a contact turns with a kinematic body in a substep. With the arm of the frame's beginning, what rides on a turntable would
     /// leave it along the tangent, a little every frame.
     #[inline(always)]
-    pub(super) fn carry(&self, centre: V8<F>, axes: &[V8<F>; 3]) -> V8<F> {
-        along(axes, self.turn.cross(centre - self.position))
+    pub(super) fn carry(&self, other: &End<F>, centre: V8<F>, axes: &[V8<F>; 3]) -> V8<F> {
+        along(axes, self.turn.cross(self.arm(other, centre)))
+    }
+
+    /// From the centre of mass to the contact: where it is looked at, but on a kinematic body that turns, which takes it along from where the other one
+    /// has it at the start of the frame.
+    #[inline(always)]
+    fn arm(&self, other: &End<F>, centre: V8<F>) -> V8<F> {
+        let arm = centre - self.position;
+        let turns = self.turn.dot(self.turn).gt(F::zero());
+        turns.select_v(arm - (other.shift - self.shift), arm)
     }
 }
 

@@ -12,6 +12,7 @@ use forerun_geometry::{Manifold, Vec3};
 use super::batch::ContactList;
 use super::contact_graph::ContactGraph;
 use super::pressure::{Carried, Footing, Pressure};
+use crate::lanes::Row;
 use crate::scratch::fill;
 use crate::{Environment, Member};
 
@@ -168,6 +169,8 @@ pub(crate) struct LoadPass<'a> {
     pub(crate) members: &'a [Member<'a>],
     pub(crate) contacts: ContactList<'a>,
     pub(crate) graph: &'a ContactGraph,
+    /// By body; see [`Bodies::centres`](super::bodies::Bodies::centres).
+    pub(crate) centres: &'a [Row],
     pub(crate) environment: &'a Environment,
     pub(crate) substep_seconds: f32,
 }
@@ -224,6 +227,12 @@ impl LoadPass<'_> {
                 below.still.add(s.still[q], f.below_x[q], f.below_z[q]);
             }
         }
+    }
+
+    /// The centre of mass of a body, where its contacts are looked at.
+    fn centre(&self, i: usize) -> Vec3 {
+        let [x, y, z, ..] = self.centres[i].0;
+        Vec3::new(x, y, z)
     }
 
     /// What gravity adds to the speed of a body in a substep. m/s
@@ -317,8 +326,8 @@ impl LoadPass<'_> {
             }
             let slide = loads.of_contact[k].slide;
             let rubs = if slide == Vec3::ZERO { slide } else { slide * self.friction(i, below) };
-            let (x, z) = points.places(here.position, rubs, compass);
-            let (below_x, below_z) = points.places(there.position, rubs, compass);
+            let (x, z) = points.places(self.centre(i), rubs, compass);
+            let (below_x, below_z) = points.places(self.centre(below), rubs, compass);
             loads.footings.push(Footing {
                 x,
                 z,

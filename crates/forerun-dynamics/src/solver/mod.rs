@@ -45,5 +45,5 @@ pub(crate) use batch::{Batch, Ends, is_mesh};
 pub(crate) use flight::fly;
 pub(crate) use islands::Roots;
 pub(crate) use rest::rest_after_slices;
-pub(crate) use rotation::times_inverse_inertia;
+pub(crate) use rotation::{times_inverse_inertia, turned};
 pub(crate) use spring::pull;

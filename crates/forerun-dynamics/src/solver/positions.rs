@@ -52,7 +52,7 @@ impl<F: Lanes> Moved<F> {
     #[inline(always)]
     fn of(eight: &[Member], bodies: &Bodies, start: usize, environment: &Environment) -> Self {
         let rows = eight_from(start);
-        let [x, y, z, s, ix, iy, iz, _] = F::gather(&bodies.centres, &rows);
+        let [_, _, _, s, ix, iy, iz, _] = F::gather(&bodies.centres, &rows);
         let [ax, ay, az, bx, by, bz, ..] = F::gather(&bodies.axes, &rows);
         let (a, b) = (V8 { x: ax, y: ay, z: az }, V8 { x: bx, y: by, z: bz });
         let (axes, i) = ([a, b, a.cross(b)], V8 { x: ix, y: iy, z: iz });
@@ -63,14 +63,17 @@ impl<F: Lanes> Moved<F> {
 
         let zero: Column = [0.0; LANES];
         let (mut q, mut w, mut spin, mut start_spin) = ([zero; 3], [1.0; LANES], [zero; 3], [zero; 3]);
+        let mut position = [zero; 3];
         for (lane, member) in eight.iter().enumerate() {
             let r = member.state.rotation;
             (q[0][lane], q[1][lane], q[2][lane], w[lane]) = (r.x, r.y, r.z, r.w);
             for axis in 0..3 {
+                position[axis][lane] = member.state.position[axis];
                 spin[axis][lane] = member.state.angular_velocity[axis];
                 start_spin[axis][lane] = bodies.spins[start + lane][axis];
             }
         }
+        let V8 { x, y, z } = V8::<F>::from_arrays(position);
         let here = bodies.pulled.partition_point(|&i| (i as usize) < start);
         for &i in bodies.pulled[here..].iter().take_while(|&&i| (i as usize) < start + LANES) {
             let (lane, seconds) = (i as usize - start, environment.settings.frame_seconds);

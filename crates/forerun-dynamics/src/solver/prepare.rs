@@ -59,7 +59,8 @@ fn prepare_lanes<F: Lanes, K: Kind>(
         let middle = Middle::of(&manifolds);
         fill_places(block, &manifolds, &ends, &middle);
         let axes = block.axes();
-        detail.carries = [ends.first.carry(middle.place, &axes), ends.second.carry(middle.place, &axes)];
+        let (first, second) = (&ends.first, &ends.second);
+        detail.carries = [first.carry(second, middle.place, &axes), second.carry(first, middle.place, &axes)];
         let pairs = Pairs::of(block, &ends);
         fill_points(block, detail, &manifolds, &pairs, F::splat(1.0 / common.substep_seconds));
         fill_friction(block, &pairs);
@@ -121,8 +122,8 @@ fn fill_places<F: Lanes, K: Kind>(
     block.normal = normal;
     block.tangent = across * (F::one() / across.length().max(F::splat(1e-15)));
     let axes = block.axes();
-    block.first = ends.first.side(middle.place, &axes);
-    block.second = ends.second.side(middle.place, &axes);
+    block.first = ends.first.side(&ends.second, middle.place, &axes);
+    block.second = ends.second.side(&ends.first, middle.place, &axes);
     for q in 0..4 {
         let is_point = manifolds.valid[q].gt(F::zero());
         let place = is_point.select_v(along(&axes, manifolds.positions[q] - middle.place), V8::zero());

@@ -6,6 +6,7 @@ use super::bodies::{Bodies, Column, eight_from, flags};
 use super::flight::spin_halfway;
 use super::poses::{Q8, from_axes, is_large, to_axes};
 use super::spring::pull;
+use crate::halfway::Halfway;
 use crate::lanes::{LANES, LaneMask, Lanes, Row, V8, cells, dispatched};
 use crate::{BodyKind, Environment, Member};
 
@@ -75,9 +76,14 @@ impl<F: Lanes> Own<F> {
                 gyroscopic |= u32::from(!alike && s != Vec3::ZERO) << lane;
             }
             kinematic |= u32::from(body.kind == BodyKind::Kinematic) << lane;
+            let shift = match body.kind {
+                BodyKind::Fixed => Vec3::ZERO,
+                _ => Halfway::of(body, state, environment).shift,
+            };
+            let middle = state.position + shift;
             let a = environment.gravity * body.gravity_scale + body.force * body.inverse_mass;
             for axis in 0..3 {
-                position[axis][lane] = state.position[axis];
+                position[axis][lane] = middle[axis];
                 velocity[axis][lane] = v[axis];
                 spin[axis][lane] = s[axis];
                 inertia[axis][lane] = body.inverse_inertia[axis];
@@ -90,7 +96,7 @@ impl<F: Lanes> Own<F> {
             let m = &body.material;
             let (half, inverse) = (body.half_thickness, body.inverse_mass);
             bodies.surfaces[start + lane] =
-                Row([m.static_friction, m.friction, m.restitution, half, inverse, 0.0, 0.0, 0.0]);
+                Row([m.static_friction, m.friction, m.restitution, half, inverse, shift.x, shift.y, shift.z]);
         }
         for surface in &mut bodies.surfaces[start + eight.len()..start + LANES] {
             *surface = Row::default();
