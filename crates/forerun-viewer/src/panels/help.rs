@@ -33,7 +33,7 @@ pub(super) fn show(ctx: &egui::Context, view: &mut View) {
         .pivot(Align2::CENTER_CENTER)
         .default_pos(room.center())
         .show(ctx, |ui| {
-            egui::ScrollArea::vertical().max_height((room.height() - 160.0).max(120.0)).show(ui, |ui| {
+            egui::ScrollArea::both().max_height((room.height() - 160.0).max(120.0)).show(ui, |ui| {
                 let half = SHORTCUTS.len().div_ceil(2);
                 ui.horizontal_top(|ui| {
                     for (i, column) in SHORTCUTS.chunks(half).enumerate() {
@@ -62,13 +62,15 @@ pub(super) fn greet(ui: &Ui, settings: &mut Settings, wishes: &mut Vec<Wish>) {
     if settings.greeted {
         return;
     }
-    let top = ui.available_rect_before_wrap().center_top();
+    let free = ui.available_rect_before_wrap();
+    let top = free.center_top();
     egui::Area::new(egui::Id::new("greeting"))
         .pivot(Align2::CENTER_TOP)
         .fixed_pos(top + egui::vec2(0.0, 12.0))
         .show(ui.ctx(), |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
-                ui.horizontal(|ui| {
+                ui.set_max_width((free.width() - 30.0).clamp(200.0, 600.0));
+                ui.horizontal_wrapped(|ui| {
                     ui.label("Space: play and pause.  Drag the timeline below.  F1: all keys.");
                     if ui.button("Keys").clicked() {
                         wishes.push(Wish::Do(Action::Help));

@@ -12,6 +12,10 @@ use crate::session::Play;
 const SPEEDS: [(f64, &str); 7] =
     [(0.125, "1/8x"), (0.25, "1/4x"), (0.5, "1/2x"), (1.0, "1x"), (2.0, "2x"), (4.0, "4x"), (8.0, "8x")];
 
+/// What is told only where there is room for it. Points.
+const FRAME_FROM: f32 = 90.0;
+const PHYSICS_FROM: f32 = 250.0;
+
 /// How physics is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Physics {
@@ -31,7 +35,9 @@ pub(super) fn show(ui: &mut Ui, play: &mut Play, palette: &Palette, wishes: &mut
         ui.add_space(6.0);
         let shown = format!("{:>8.3} s", play.picture.time_s);
         ui.label(RichText::new(shown).monospace().strong().size(15.0)).on_hover_text("Display time");
-        ui.label(RichText::new(format!("frame {}", play.picture.frame.0)).weak());
+        if ui.available_width() > FRAME_FROM {
+            ui.label(RichText::new(format!("frame {}", play.picture.frame.0)).weak());
+        }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| physics(ui, play, palette));
     });
 }
@@ -85,7 +91,10 @@ fn speeds(ui: &mut Ui, play: &mut Play) {
 fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
     let picture = &play.picture;
     if let Some(coupled) = play.coupled() {
-        let text = format!("coupled: steps of {:.1} ms", 1e3 * coupled.step_s());
+        let step_ms = 1e3 * coupled.step_s();
+        let room = ui.available_width() > PHYSICS_FROM;
+        let text =
+            if room { format!("coupled: steps of {step_ms:.1} ms") } else { format!("{step_ms:.1} ms") };
         ui.label(text)
             .on_hover_text("Physics and display take turns: who shows a picture waits for its step.");
         return;
@@ -107,9 +116,12 @@ fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
     };
     let ahead_s = ahead as f64 * play.frame_seconds();
     let text = format!("physics {word}, {ahead} frames ({ahead_s:.2} s) ahead");
-    let response = ui.label(text);
-    let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+    let label = (ui.available_width() > PHYSICS_FROM).then(|| ui.label(&text));
+    let (dot, response) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().circle_filled(dot.center(), 4.5, colour);
     let memory = picture.stats.state_bytes as f64 / 1_048_576.0;
-    response.on_hover_text(format!("{tip}\n{} bodies, {memory:.1} MiB of stored states", play.samples.len()));
+    let bodies = play.samples.len();
+    label
+        .unwrap_or(response)
+        .on_hover_text(format!("{text}\n{tip}\n{bodies} bodies, {memory:.1} MiB of stored states"));
 }
