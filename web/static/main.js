@@ -1,6 +1,7 @@
 // Starts the viewer in the page's canvas. Everything else is in the WebAssembly module and in worker.js.
 
 import init, * as forerun from "./forerun_web.js";
+import { gestures } from "./touch.js";
 
 /** The smallest module with a lane of SIMD in it. */
 const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
@@ -87,6 +88,7 @@ function listen() {
   });
   window.addEventListener("pagehide", () => forerun.keep_settings());
   document.addEventListener("visibilitychange", () => forerun.keep_settings());
+  gestures(canvas);
   window.addEventListener("keydown", sort, { capture: true });
   window.addEventListener("keyup", sort, { capture: true });
   window.addEventListener("blur", letGo);

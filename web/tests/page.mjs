@@ -164,7 +164,25 @@ async function touch(browser, server) {
     await fingers("touchMove", [150 - 10 * i, 150], [240 + 10 * i, 150]);
   }
   await fingers("touchEnd");
-  check(width(await places()) > 1.05 * width(turned), "phone: two fingers come nearer");
+  const near = await places();
+  check(width(near) > 1.3 * width(turned), "phone: two fingers that part come nearer");
+  await fingers("touchStart", [150, 150]);
+  await fingers("touchStart", [150, 150], [240, 150]);
+  for (let i = 1; i <= 4; i++) {
+    await fingers("touchMove", [150, 150 + 15 * i], [240, 150 + 15 * i]);
+  }
+  await fingers("touchEnd");
+  const panned = await places();
+  const down = [...near.keys()].filter((id) => panned.has(id)).map((id) => panned.get(id)[1] - near.get(id)[1]);
+  check(down.length > 0 && down.every((pixels) => pixels > 20), "phone: two fingers move the picture");
+  const { play } = await state(page);
+  await key(page, "t");
+  await fingers("touchStart", place);
+  await fingers("touchStart", place, [240, 150]);
+  await pictures(page, 3);
+  await fingers("touchEnd");
+  await pictures(page, 3);
+  check((await state(page)).play.bodies === play.bodies, "phone: a second finger leaves off a throw");
   await page.close();
 }
 
