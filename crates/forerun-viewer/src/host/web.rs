@@ -16,6 +16,9 @@ use super::{SceneSource, Started};
 /// States of the past that may be gone back to. Frames: a minute of them, as pages have less memory.
 const PAST_FRAMES: u32 = 3600;
 
+/// What states may take at most, in the worker and once more in the page. Bytes: a page has 4 GiB, and a phone less.
+const STATES_MAX: usize = 256 << 20;
+
 /// Orders that may wait while physics is in a step: to take back a long drag is some thousands.
 const ORDERS_MAX: usize = 16_384;
 
@@ -124,7 +127,7 @@ pub fn remote_settings() -> RemoteSettings {
 /// How far timelines look ahead and back.
 #[must_use]
 pub fn timeline_settings() -> TimelineSettings {
-    TimelineSettings { past: PAST_FRAMES, ..TimelineSettings::default() }
+    TimelineSettings { past: PAST_FRAMES, bytes_max: Some(STATES_MAX), ..TimelineSettings::default() }
 }
 
 fn clock() -> Clock {
