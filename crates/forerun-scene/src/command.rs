@@ -83,6 +83,13 @@ pub enum SceneCommand {
         /// The factor on gravity.
         scale: f32,
     },
+    /// A dynamic body gets another mass, spread as the one before.
+    SetMass {
+        /// Its number.
+        body: u32,
+        /// kg.
+        mass: f32,
+    },
     /// A body moves in another way from now on.
     SetKind {
         /// Its number.
@@ -215,6 +222,8 @@ impl<'a> Roster<'a> {
             SceneCommand::SetMaterial { body: find(&new.body)?, material }
         } else if let Some(new) = &entry.set_gravity_scale {
             SceneCommand::SetGravityScale { body: find(&new.body)?, scale: new.scale }
+        } else if let Some(new) = &entry.set_mass {
+            SceneCommand::SetMass { body: find(&new.body)?, mass: new.mass }
         } else if let Some(new) = &entry.set_kind {
             SceneCommand::SetKind { body: find(&new.body)?, kind: new.kind.into() }
         } else if let Some(hold) = &entry.hold {

@@ -46,6 +46,9 @@ pub struct CommandEntry {
     /// A body's factor on gravity changes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set_gravity_scale: Option<GravityScaleEntry>,
+    /// A dynamic body gets another mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub set_mass: Option<MassEntry>,
     /// A body moves in another way from now on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set_kind: Option<SetKindEntry>,
@@ -150,6 +153,16 @@ pub struct GravityScaleEntry {
     pub scale: f32,
 }
 
+/// `set_mass`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MassEntry {
+    /// The body.
+    pub body: BodyRef,
+    /// kg, from 1e-12 to 1e12; it is spread as the mass before.
+    pub mass: f32,
+}
+
 /// `set_kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -182,6 +195,9 @@ pub struct HoldEntry {
 /// Largest frequency (Hz) and damping ratio of a spring, as a timeline accepts them.
 const SPRING_MAX: f32 = 1e4;
 
+/// Least and largest mass (kg) that a command gives, as a timeline accepts them.
+const MASSES: (f32, f32) = (1e-12, 1e12);
+
 fn default_frequency() -> f32 {
     5.0
 }
@@ -209,7 +225,7 @@ impl CommandEntry {
         if let Some(entry) = &self.move_to {
             return Some((&["move", "body"], &entry.body));
         }
-        body_of!(push, set_velocity, set_force, set_material, set_gravity_scale, set_kind, hold);
+        body_of!(push, set_velocity, set_force, set_material, set_gravity_scale, set_mass, set_kind, hold);
         None
     }
 
@@ -241,6 +257,9 @@ impl CommandEntry {
         }
         if let Some(entry) = &self.set_gravity_scale {
             range::finite(entry.scale, "scale").in_field("set_gravity_scale")?;
+        }
+        if let Some(entry) = &self.set_mass {
+            range::between(entry.mass, MASSES, "mass").in_field("set_mass")?;
         }
         if let Some(entry) = &self.hold {
             entry.check().in_field("hold")?;
@@ -276,6 +295,7 @@ impl CommandEntry {
             ("set_force", self.set_force.is_some()),
             ("set_material", self.set_material.is_some()),
             ("set_gravity_scale", self.set_gravity_scale.is_some()),
+            ("set_mass", self.set_mass.is_some()),
             ("set_kind", self.set_kind.is_some()),
             ("hold", self.hold.is_some()),
             ("release", self.release.is_some()),

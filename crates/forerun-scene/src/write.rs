@@ -136,6 +136,7 @@ impl Writer {
         self.optional("set_force", &command.set_force);
         self.optional("set_material", &command.set_material);
         self.optional("set_gravity_scale", &command.set_gravity_scale);
+        self.optional("set_mass", &command.set_mass);
         self.optional("set_kind", &command.set_kind);
         self.optional("hold", &command.hold);
         self.optional("release", &command.release);

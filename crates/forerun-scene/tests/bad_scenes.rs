@@ -391,6 +391,13 @@ const TOML: &[Bad] = &[
         says: &["a finite number, is inf"],
     },
     Bad {
+        what: "mass that is none",
+        text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\nset_mass = { body = 0, mass = 0 }\n",
+        line: 6,
+        field: "commands[0].set_mass.mass",
+        says: &["from 0.000000000001 to 1000000000000, is 0"],
+    },
+    Bad {
         what: "hold without stiffness",
         text: "[[bodies]]\nshape = { sphere = { radius = 1 } }\n[[commands]]\nframe = 1\n[commands.hold]\nbody = 0\ntarget = [0, 0, 0]\nfrequency_hz = 0\n",
         line: 9,

@@ -187,6 +187,10 @@ set_gravity = [0.0, 0.0, 0.0]
 [[commands]]
 frame = 20
 set_gravity_scale = { body = "hull", scale = -0.5 }
+
+[[commands]]
+frame = 21
+set_mass = { body = "hull", mass = 12.5 }
 "#;
 
 /// Line by line: a field that the writer forgets is missing here.
@@ -209,11 +213,12 @@ fn commands_come_in_the_order_of_their_frames_with_the_bodies_numbers() {
     let scene = Scene::parse(EVERYTHING, Format::Toml, "everything.toml").unwrap();
     let commands = scene.commands().unwrap();
     let frames: Vec<u64> = commands.iter().map(|c| c.frame).collect();
-    assert_eq!(frames, [2, 3, 10, 12, 13, 14, 15, 16, 17, 18, 19, 20]);
+    assert_eq!(frames, [2, 3, 10, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21]);
     assert_eq!(commands[0].command, SceneCommand::Remove { body: 4 });
     assert!(matches!(&commands[1].command, SceneCommand::Add { body: 5, .. }));
     assert!(matches!(&commands[2].command, SceneCommand::Move { body: 5, .. }));
     assert_eq!(commands[11].command, SceneCommand::SetGravityScale { body: 3, scale: -0.5 });
+    assert_eq!(commands[12].command, SceneCommand::SetMass { body: 3, mass: 12.5 });
     assert!(matches!(&commands[4].command, SceneCommand::SetVelocity { body: 3, .. }));
 }
 

@@ -13,6 +13,9 @@ use crate::Frame;
 /// Largest frequency (Hz) and damping ratio of a spring. It is stiffer than any frame can show, and its square is far from what an f32 holds.
 const SPRING_MAX: f32 = 1e4;
 
+/// Least and largest mass that a command gives: far from where its inverse is no number. kg.
+const MASSES: (f32, f32) = (1e-12, 1e12);
+
 /// When a command acts and, within its frame, after which others. The order of keys is the order in which commands act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CommandKey {
@@ -108,7 +111,15 @@ pub enum Change {
         /// The factor.
         scale: f32,
     },
-    /// The body becomes dynamic, fixed or kinematic.
+    /// A dynamic body becomes heavier or lighter throughout: its moments of inertia change by the same factor. One that is fixed or kinematic then has no
+    /// mass, and stays as it is.
+    SetMass {
+        /// Which body.
+        body: BodyId,
+        /// The mass. kg, from 1e-12 to 1e12.
+        mass: f32,
+    },
+    /// The body becomes dynamic, fixed or kinematic. Its mass is the one that it was made with.
     SetKind {
         /// Which body.
         body: BodyId,
@@ -137,6 +148,7 @@ impl Change {
             | Change::SetMaterial { body, .. }
             | Change::SetForce { body, .. }
             | Change::SetGravityScale { body, .. }
+            | Change::SetMass { body, .. }
             | Change::SetKind { body, .. } => Some(*body),
             Change::SetGravity { .. } => None,
         }
@@ -184,6 +196,9 @@ impl Change {
             Change::SetGravityScale { scale, .. } => {
                 check("scale", scale.is_finite(), || format!("must be a finite number, is {scale}"))
             }
+            Change::SetMass { mass, .. } => check("mass", (MASSES.0..=MASSES.1).contains(mass), || {
+                format!("must be from {:e} to {:e} kg, is {mass}", MASSES.0, MASSES.1)
+            }),
             Change::SetGravity { gravity } => check_vector("gravity", *gravity),
         }
     }
@@ -278,6 +293,18 @@ impl std::error::Error for CommandError {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn masses_that_are_none_are_refused() {
+        let refused = |mass: f32| {
+            let checked = Change::SetMass { body: BodyId(0), mass }.check_numbers();
+            checked.map_err(|error| error.to_string()).err()
+        };
+        assert_eq!((refused(1e-12), refused(1e12)), (None, None));
+        for bad in [0.0, -0.0, -1.0, 1e-20, 1e13, f32::INFINITY, f32::NAN] {
+            assert_eq!(refused(bad), Some(format!("mass: must be from 1e-12 to 1e12 kg, is {bad}")));
+        }
+    }
 
     #[test]
     fn springs_that_no_frame_could_follow_are_refused() {

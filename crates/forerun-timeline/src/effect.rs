@@ -34,6 +34,11 @@ pub(crate) fn body_after(
                 ..Body::clone(body)
             })))
         }
+        Change::SetMass { mass, .. } => {
+            let def = BodyDef { kind: BodyKind::Dynamic, ..def.ok_or(Ignored)?.clone() };
+            let (made, _) = Body::new(&def).map_err(|_| Ignored)?;
+            weighed(body, &made, 1.0 / mass).map(Arc::new).map(Some)
+        }
         // The same memory, so that a look at the pointer tells that nothing changed.
         Change::Move { .. }
         | Change::Push { .. }
@@ -41,6 +46,17 @@ pub(crate) fn body_after(
         | Change::SetGravity { .. } => Ok(Some(Arc::clone(body))),
         _ => Ok(Some(Arc::new(with_properties(body, change)))),
     }
+}
+
+/// The body with another inverse mass (1/kg), spread as it is in one that was made of the same definition. Always reckoned from that one: the result does not
+/// depend on what the mass was before.
+pub(crate) fn weighed(body: &Body, made: &Body, inverse_mass: f32) -> Result<Body, Ignored> {
+    let inverse_inertia = made.inverse_inertia * (inverse_mass / made.inverse_mass);
+    let possible = inverse_inertia.is_finite() && inverse_inertia.min_element() > 0.0;
+    if body.kind != BodyKind::Dynamic || !possible {
+        return Err(Ignored);
+    }
+    Ok(Body { inverse_mass, inverse_inertia, ..body.clone() })
 }
 
 /// The body with what a change sets: spring, material, force, factor on gravity.
@@ -75,6 +91,7 @@ fn with_properties(body: &Body, change: &Change) -> Body {
         | Change::Move { .. }
         | Change::Push { .. }
         | Change::SetVelocity { .. }
+        | Change::SetMass { .. }
         | Change::SetKind { .. }
         | Change::SetGravity { .. } => {}
     }
@@ -86,7 +103,7 @@ impl Change {
     /// `SetGravity`: they are not about the properties of one body that is there.
     ///
     /// # Errors
-    /// When a number of the change is out of its range, or one of the new state would not be finite.
+    /// When a number of the change is out of its range, one of the new state would not be finite, or a body that is not dynamic is to get a mass.
     pub fn applied_to(&self, body: &Body, state: &BodyState) -> Result<(Body, BodyState), CommandError> {
         self.check_numbers()?;
         if matches!(
@@ -95,7 +112,15 @@ impl Change {
         ) {
             return Ok((body.clone(), *state));
         }
-        let body = with_properties(body, self);
+        let body = match self {
+            Change::SetMass { mass, .. } => {
+                weighed(body, body, 1.0 / mass).map_err(|Ignored| CommandError::Number {
+                    field: "mass",
+                    message: "is not for a body that is fixed or kinematic: make it dynamic first".to_owned(),
+                })?
+            }
+            _ => with_properties(body, self),
+        };
         let state = state_after(&body, state, self).map_err(|Ignored| CommandError::Number {
             field: "change",
             message: "is so large that the state would not be finite".to_owned(),
@@ -157,6 +182,31 @@ mod tests {
         let expected = 5.0 / (mass * 1.01 / 3.0);
         assert!((next.angular_velocity.z - expected).abs() < 1e-5, "{}", next.angular_velocity);
         assert!(next.angular_velocity.x.abs() + next.angular_velocity.y.abs() < 1e-6);
+    }
+
+    #[test]
+    fn another_mass_is_spread_as_the_one_before() {
+        let (body, _) = rod();
+        let def = BodyDef::new(body.shape.clone());
+        let set = |body: &Arc<Body>, mass: f32| {
+            body_after(Some(body), &Change::SetMass { body: BodyId(0), mass }, Some(&def))
+        };
+        let heavy = set(&body, 300.0).unwrap().unwrap();
+        // I about z = m (1^2 + 0.1^2) / 3, about x = m (0.1^2 + 0.1^2) / 3.
+        assert!((heavy.inverse_mass * 300.0 - 1.0).abs() < 1e-6);
+        let inertia = Vec3::new(2.0, 101.0, 101.0);
+        assert!((heavy.inverse_inertia * inertia - Vec3::ONE).length() < 1e-4, "{}", heavy.inverse_inertia);
+        // However it came there, and back to the bits of the beginning.
+        let light = set(&heavy, 7.0).unwrap().unwrap();
+        assert_eq!(set(&light, 300.0).unwrap().unwrap(), heavy);
+        assert_eq!(weighed(&light, &body, body.inverse_mass).as_ref(), Ok(&*body));
+        // What does not move freely has none.
+        let fixed = Arc::new(Body { kind: BodyKind::Fixed, ..Body::clone(&body) });
+        assert_eq!(set(&fixed, 5.0), Err(Ignored));
+        let (state, change) = (rod().1, Change::SetMass { body: BodyId(0), mass: 5.0 });
+        let refused = change.applied_to(&fixed, &state).unwrap_err().to_string();
+        assert!(refused.contains("make it dynamic first"), "{refused}");
+        assert!((change.applied_to(&body, &state).unwrap().0.inverse_mass - 0.2).abs() < 1e-9);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyDef, BodyId, Environment};
+use forerun_dynamics::{Body, BodyDef, BodyId, BodyKind, Environment};
 
 use crate::order::LOCAL;
 use crate::stale::same_body;
@@ -122,6 +122,13 @@ impl Timeline {
             Change::SetKind { body, kind } => {
                 if let Some(def) = self.definitions.def(*body) {
                     let def = BodyDef { kind: *kind, ..BodyDef::clone(def) };
+                    Body::new(&def).map_err(CommandError::Body)?;
+                }
+            }
+            // What cannot be dynamic never has a mass.
+            Change::SetMass { body, .. } => {
+                if let Some(def) = self.definitions.def(*body) {
+                    let def = BodyDef { kind: BodyKind::Dynamic, ..BodyDef::clone(def) };
                     Body::new(&def).map_err(CommandError::Body)?;
                 }
             }

@@ -75,6 +75,8 @@ pub struct NameParts {
 pub struct BodyParts {
     /// How it moves.
     pub kind: BodyKind,
+    /// 1/kg; 0 unless dynamic.
+    pub inverse_mass: f32,
     /// Surface.
     pub material: Material,
     /// Factor on gravity.
@@ -143,6 +145,7 @@ impl Timeline {
         let there = self.definitions.body(id, oldest).zip(self.table(oldest).get(id));
         let body = there.map(|(body, state)| BodyParts {
             kind: body.kind,
+            inverse_mass: body.inverse_mass,
             material: body.material,
             gravity_scale: body.gravity_scale,
             force: body.force,
@@ -326,6 +329,7 @@ fn make(part: &NameParts, environment: &Environment) -> Result<Option<Arc<Body>>
     let Some(now) = &part.body else { return Ok(None) };
     let traits = BodyTraits {
         kind: now.kind,
+        inverse_mass: now.inverse_mass,
         material: now.material,
         gravity_scale: now.gravity_scale,
         force: now.force,

@@ -12,7 +12,10 @@ use crate::{Change, CommandError, Frame, Progress, Timeline};
 const FRAMES_MAX: u32 = 6000;
 
 /// No preview tells of more bodies.
-const BODIES_MAX: usize = 1024;
+const BODIES_MAX: usize = 128;
+
+/// Nor of more poses: some 2 MB.
+const POSES_MAX: u64 = 65_536;
 
 /// Names that a preview may make known at most: those that others have been given, and the timeline has not heard of.
 const NAMES_MAX: usize = 65_536;
@@ -26,7 +29,8 @@ pub struct Preview {
     pub changes: Vec<Change>,
     /// How many frames to look ahead from there. At most 6000.
     pub frames: u32,
-    /// Of whom to tell; empty for all that come out otherwise than now. At most 1024 are told of, those with the lowest ids.
+    /// Of whom to tell; empty for all that come out otherwise than now. At most 128 are told of, and of at most 65 536 poses: first those that the
+    /// changes are made to, then those with the lowest ids.
     pub bodies: Vec<BodyId>,
 }
 
@@ -99,8 +103,22 @@ impl PreviewRun {
             [] => self.changed(to),
             named => named.iter().copied().collect(),
         };
-        let trails = bodies.into_iter().take(BODIES_MAX).filter_map(|body| self.trail(body, (from, to)));
+        let room = (POSES_MAX / (to.since(from) + 1)).clamp(1, BODIES_MAX as u64) as usize;
+        let trails = self.told_of(&bodies, room).into_iter().filter_map(|body| self.trail(body, (from, to)));
         Previewed { frame: self.preview.frame, to, trails: trails.collect() }
+    }
+
+    /// So many of some bodies.
+    fn told_of(&self, bodies: &BTreeSet<BodyId>, room: usize) -> BTreeSet<BodyId> {
+        let mut told = BTreeSet::new();
+        let named = self.preview.changes.iter().filter_map(Change::body).filter(|body| bodies.contains(body));
+        for body in named.chain(bodies.iter().copied()) {
+            if told.len() == room {
+                break;
+            }
+            told.insert(body);
+        }
+        told
     }
 
     /// The bodies that the changes are made to, and those that come out otherwise up to a frame, as far as it is known how they would without them.

@@ -129,7 +129,7 @@ impl Subject {
     /// What changes the body itself: spring, surface, forces, kind.
     fn altered(&self, factor: f32, random: &mut Random) -> Change {
         let (body, size) = (self.id, self.size());
-        match random.below(33) {
+        match random.below(37) {
             0..8 => Change::Hold { body, spring: self.spring(factor, random) },
             8..12 => Change::Release { body },
             12..18 => {
@@ -146,6 +146,12 @@ impl Subject {
                     * (if random.below(2) == 0 { 0.0 } else { self.mass() * size * factor }),
             },
             23..28 => Change::SetGravityScale { body, scale: random.signed() * factor },
+            // Up to eight times heavier or lighter.
+            28..32 => {
+                let times = (1.0 + 7.0 * random.signed().abs()) * factor.abs().max(0.01);
+                let mass = if random.below(2) == 0 { self.mass() * times } else { self.mass() / times };
+                Change::SetMass { body, mass: mass.clamp(1e-6, 1e9) }
+            }
             _ => {
                 let kinds = [BodyKind::Dynamic, BodyKind::Fixed, BodyKind::Kinematic];
                 Change::SetKind { body, kind: kinds[random.below(3) as usize] }

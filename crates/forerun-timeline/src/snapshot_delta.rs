@@ -22,6 +22,7 @@ use forerun_geometry::Vec3;
 
 use crate::areas::Grid;
 use crate::commanding::{Effect, FrameEffects};
+use crate::effect::{Ignored, weighed};
 use crate::snapshot::Doubt;
 use crate::{Change, CommandKey, Edit, Frame, Snapshot};
 
@@ -104,6 +105,8 @@ pub struct HistoryDelta {
 pub struct BodyTraits {
     /// How it moves.
     pub kind: BodyKind,
+    /// 1/kg; 0 unless dynamic.
+    pub inverse_mass: f32,
     /// Surface.
     pub material: Material,
     /// Factor on gravity.
@@ -120,8 +123,8 @@ impl BodyTraits {
     /// Those of a body.
     #[must_use]
     pub fn of(body: &Body) -> BodyTraits {
-        let Body { kind, material, gravity_scale, force, torque, spring, .. } = *body;
-        BodyTraits { kind, material, gravity_scale, force, torque, spring }
+        let Body { kind, inverse_mass, material, gravity_scale, force, torque, spring, .. } = *body;
+        BodyTraits { kind, inverse_mass, material, gravity_scale, force, torque, spring }
     }
 
     /// The body with these traits that was made so.
@@ -129,7 +132,7 @@ impl BodyTraits {
     /// # Errors
     /// When the definition is not possible for the kind, or a number is not finite or out of its range.
     pub fn body(&self, def: &BodyDef) -> Result<Body, String> {
-        let BodyTraits { kind, material, gravity_scale, force, torque, spring } = *self;
+        let BodyTraits { kind, inverse_mass, material, gravity_scale, force, torque, spring } = *self;
         let (made, _) =
             Body::new(&BodyDef { kind, ..BodyDef::clone(def) }).map_err(|error| format!("kind: {error}"))?;
         let body = BodyId(0);
@@ -142,6 +145,13 @@ impl BodyTraits {
         for change in changes {
             change.check_numbers().map_err(|error| error.to_string())?;
         }
+        let made = if inverse_mass.to_bits() == made.inverse_mass.to_bits() {
+            made
+        } else {
+            let possible = inverse_mass > 0.0 && inverse_mass.is_finite();
+            let weighed = if possible { weighed(&made, &made, inverse_mass) } else { Err(Ignored) };
+            weighed.map_err(|Ignored| format!("inverse_mass: {inverse_mass} is not possible for it"))?
+        };
         Ok(Body { material, force, torque, gravity_scale, spring, ..made })
     }
 }

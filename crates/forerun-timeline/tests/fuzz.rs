@@ -278,7 +278,7 @@ fn is_made(change: &Change, bodies: &[BodyDef], commands: &BTreeMap<CommandKey, 
 fn may_refuse(what: &What) -> bool {
     match what {
         // The ground bounds no volume, and there are bodies of next to no mass.
-        What::SetKind(..) => true,
+        What::SetKind(..) | What::SetMass(..) => true,
         _ => !what.is_plain(),
     }
 }

@@ -212,3 +212,23 @@ fn a_preview_that_is_not_possible_says_why() {
     let refused = previewed(&timeline, preview(Frame(5), far));
     assert_eq!(refused, Err(CommandError::UnknownBody(BodyId(u32::MAX))));
 }
+
+#[test]
+fn a_preview_tells_of_a_bounded_number_of_bodies_and_of_the_one_that_is_thrown_in_any_case() {
+    let ball = BodyDef::new(Shape::Sphere(Sphere { radius: 0.1 }));
+    let balls: Vec<BodyDef> = (0..200_u8).map(|i| ball.clone().at(Vec3::X * f32::from(i))).collect();
+    let settings = TimelineSettings { lookahead: 5, ..TimelineSettings::default() };
+    let mut timeline = Timeline::new(&balls, Environment::default(), settings).unwrap();
+    run(&mut timeline);
+    let name = BodyId(200);
+    let add = Change::Add { body: name, def: Box::new(ball.at(Vec3::Y * 3.0)) };
+    let bodies = (0..201).map(BodyId).collect();
+    let preview = Preview { frame: Frame(2), changes: vec![add], frames: 3, bodies };
+    let told: Vec<BodyId> =
+        previewed(&timeline, preview.clone()).unwrap().trails.iter().map(|t| t.body).collect();
+    assert_eq!(told, (0..127).chain([200]).map(BodyId).collect::<Vec<_>>());
+    // The farther it looks the fewer they are.
+    let told = previewed(&timeline, Preview { frames: 1000, ..preview }).unwrap();
+    assert_eq!(told.trails.len(), 65);
+    assert!(told.trails.iter().any(|trail| trail.body == name && trail.poses.len() == 1001));
+}

@@ -28,13 +28,25 @@ pub struct Camera {
     pub pitch: f32,
     /// From the target. Metres, above 0.
     pub distance: f32,
+    /// Where in the picture the target is: `x` and `y` from -1 (left, bottom) to 1. The middle of what panels leave free.
+    pub centre: [f32; 2],
+    /// How much is seen from bottom to top, against a window without panels: above 0.
+    pub lens: f32,
     /// What moves it from picture to picture.
     pub(crate) motion: Motion,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Camera { target: Vec3::ZERO, yaw: 0.6, pitch: 0.45, distance: 10.0, motion: Motion::default() }
+        Camera {
+            target: Vec3::ZERO,
+            yaw: 0.6,
+            pitch: 0.45,
+            distance: 10.0,
+            centre: [0.0; 2],
+            lens: 1.0,
+            motion: Motion::default(),
+        }
     }
 }
 
@@ -69,20 +81,22 @@ impl Camera {
     /// The whole angle of what is seen from bottom to top. Radians.
     #[must_use]
     pub fn angle(&self) -> f32 {
-        2.0 * HALF_ANGLE
+        2.0 * self.half_height().atan()
     }
 
     /// Half the height of what is seen at distance 1.
     #[must_use]
     pub fn half_height(&self) -> f32 {
-        HALF_ANGLE.tan()
+        HALF_ANGLE.tan() * self.lens
     }
 
     /// From the eye through a place of the picture: `x` and `y` from -1 (left, bottom) to 1, `aspect` is width over height.
     #[must_use]
     pub fn ray(&self, x: f32, y: f32, aspect: f32) -> Ray {
-        let half = self.half_height();
-        let direction = self.forward() + self.right() * (x * half * aspect) + self.up() * (y * half);
+        let (half, [centre_x, centre_y]) = (self.half_height(), self.centre);
+        let direction = self.forward()
+            + self.right() * ((x - centre_x) * half * aspect)
+            + self.up() * ((y - centre_y) * half);
         Ray { origin: self.eye(), direction: direction.normalize() }
     }
 
@@ -91,8 +105,8 @@ impl Camera {
     pub fn project(&self, point: Vec3, aspect: f32) -> Option<[f32; 2]> {
         let (at, half) = (point - self.eye(), self.half_height());
         let depth = at.dot(self.forward());
-        let place = [at.dot(self.right()) / (half * aspect * depth), at.dot(self.up()) / (half * depth)];
-        (depth > 0.0).then_some(place)
+        let [x, y] = [at.dot(self.right()) / (half * aspect * depth), at.dot(self.up()) / (half * depth)];
+        (depth > 0.0).then_some([x + self.centre[0], y + self.centre[1]])
     }
 
     /// Goes round the target. Radians.
@@ -130,18 +144,6 @@ impl Camera {
         self.target = point + (self.target - point) * (self.distance / before);
     }
 
-    /// Looks at a ball from where it is, so that all of it is seen.
-    pub fn look_at(&mut self, centre: Vec3, radius: f32) {
-        self.motion.stop();
-        self.target = centre;
-        self.distance = distance_for(radius);
-    }
-
-    /// Travels to where it sees all of a ball.
-    pub fn travel_to(&mut self, centre: Vec3, radius: f32) {
-        self.motion.travel(Framed { target: centre, distance: distance_for(radius), ..self.framed() });
-    }
-
     /// Where it is now.
     pub(crate) fn framed(&self) -> Framed {
         Framed { target: self.target, distance: self.distance, yaw: self.yaw, pitch: self.pitch }
@@ -158,9 +160,17 @@ impl Camera {
         self.motion.travel(framed);
     }
 
-    /// Says how much of the picture is free of panels: width and height, in heights of the picture.
-    pub fn set_free(&mut self, free: [f32; 2]) {
-        self.motion.free = free;
+    /// Says what of the picture is free of panels: width and height, in heights of the picture, and where the middle of it is, as in [`Camera::centre`].
+    pub fn set_free(&mut self, size: [f32; 2], middle: [f32; 2]) {
+        self.motion.free = size;
+        self.centre = middle;
+    }
+
+    /// What is seen between the panels, in a picture of its own; `aspect` is width over height.
+    #[must_use]
+    pub fn without_panels(&self, aspect: f32) -> Camera {
+        let [width, height] = self.motion.free;
+        Camera { centre: [0.0; 2], lens: self.lens * height.max(width / aspect).clamp(0.1, 1.0), ..*self }
     }
 
     /// Whether it moves by itself.
@@ -192,11 +202,6 @@ impl Camera {
     }
 }
 
-/// From where a ball fills the picture. Metres.
-fn distance_for(radius: f32) -> f32 {
-    (radius.max(1e-3) / HALF_ANGLE.sin()).clamp(1e-3, 1e5)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -213,6 +218,29 @@ mod tests {
         let ray = camera.ray(0.0, 0.0, 1.7);
         assert!((ray.origin + ray.direction * 4.0 - camera.target).length() < 1e-5);
         assert!(camera.up().y > 0.0 && camera.right().dot(camera.up()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn beside_panels_the_target_is_in_the_middle_of_what_is_free() {
+        let mut camera = Camera { target: Vec3::new(1.0, 2.0, 3.0), ..Camera::default() };
+        camera.set_free([1.0, 0.6], [-0.1, 0.4]);
+        let near = |place: Option<[f32; 2]>, [x, y]: [f32; 2]| {
+            place.is_some_and(|at| (at[0] - x).abs() + (at[1] - y).abs() < 1e-4)
+        };
+        assert!(near(camera.project(camera.target, 1.6), [-0.1, 0.4]));
+        let ray = camera.ray(0.5, -0.7, 1.6);
+        assert!(near(camera.project(ray.origin + ray.direction * 5.0, 1.6), [0.5, -0.7]));
+        // What a wheel brings nearer stays under it.
+        let depth = camera.distance / ray.direction.dot(camera.forward());
+        let point = ray.origin + ray.direction * depth;
+        camera.zoom_to(0.5, &ray);
+        assert!(near(camera.project(point, 1.6), [0.5, -0.7]));
+        // A picture of its own shows what is free, and that fills it.
+        let aspect = 1.0 / 0.6;
+        let alone = camera.without_panels(aspect);
+        assert!(near(alone.project(camera.target, aspect), [0.0, 0.0]));
+        let corner = camera.ray(-0.1 + 1.0 / 1.6, 0.4 + 0.6, 1.6);
+        assert!(near(alone.project(corner.origin + corner.direction, aspect), [1.0, 1.0]));
     }
 
     #[test]

@@ -12,6 +12,7 @@ pub use shot::Shot;
 use three_d::egui;
 
 use crate::host::{self, Saving};
+use crate::news::News;
 use crate::session::Session;
 
 /// A picture that is to be kept.
@@ -27,13 +28,19 @@ pub enum Want {
     Hand,
 }
 
-/// Which half of a picture is there.
+/// What of a picture is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawn {
-    /// The scene, but no panels yet.
+    /// The scene, without panels.
     Scene,
     /// All of it.
     All,
+}
+
+impl Drawn {
+    fn suits(self, want: Want) -> bool {
+        (want == Want::Bare) == (self == Drawn::Scene)
+    }
 }
 
 /// Pictures that are to be kept, those that are being written, and the film that is being taken.
@@ -47,16 +54,22 @@ pub struct Capture {
     pub handed: Option<Shot>,
     saving: Vec<Saving>,
     /// What came of the last one: where it went, or why not.
-    pub message: Option<Result<String, String>>,
+    pub message: News<Result<String, String>>,
 }
 
 impl Capture {
-    /// Takes those of the wanted pictures that can be taken of what is drawn by now.
+    /// Whether a picture is wanted of what would be drawn so.
+    #[must_use]
+    pub fn is_wanted(&self, drawn: Drawn) -> bool {
+        self.wants.iter().any(|want| drawn.suits(*want))
+    }
+
+    /// Takes those of the wanted pictures that can be taken of what is drawn.
     pub fn take(&mut self, drawn: Drawn, pixels_per_point: f32, session: &Session, read: impl Fn() -> Shot) {
-        let due = |want: &Want| (*want == Want::Bare) == (drawn == Drawn::Scene);
-        if !self.wants.iter().any(due) {
+        if !self.is_wanted(drawn) {
             return;
         }
+        let due = |want: &Want| drawn.suits(*want);
         let whole = read();
         let (now, later) = self.wants.drain(..).partition(due);
         self.wants = later;
@@ -86,13 +99,13 @@ impl Capture {
         let message = &mut self.message;
         self.saving.retain_mut(|saving| match saving.poll() {
             Some(saved) => {
-                *message = Some(saved);
+                message.tell(saved);
                 false
             }
             None => true,
         });
         if let Some(ended) = self.film.as_mut().and_then(Film::ended) {
-            *message = Some(ended);
+            message.tell(ended);
             self.film = None;
         }
     }
@@ -119,7 +132,7 @@ impl Capture {
             Some(film) => film.end(),
             None => match Film::begin(settings, &stem(session), window) {
                 Ok(film) => self.film = Some(film),
-                Err(message) => self.message = Some(Err(message)),
+                Err(message) => self.message.tell(Err(message)),
             },
         }
     }

@@ -49,6 +49,15 @@ impl Desk<'_> {
         }
     }
 
+    /// The window is not looked at any more: nobody tells when keys and buttons are let go.
+    pub fn lose_focus(&mut self) {
+        if let Some(play) = self.session.play_mut() {
+            self.hands.let_go(play);
+        }
+        self.camera.motion.release();
+        self.camera.motion.turning = false;
+    }
+
     /// Does what a key, a menu or a button asks for, as far as it needs no window.
     pub fn perform(&mut self, action: Action) {
         let Desk { session, view, .. } = self;
@@ -79,9 +88,15 @@ impl Desk<'_> {
         match action {
             Action::Focus => focus(play, self.camera, play.selection.bodies()),
             Action::FrameAll => focus(play, self.camera, &[]),
-            Action::Add => self.hands.add(play, self.camera, &self.view.grip),
-            Action::Delete => play.remove_selected(),
-            Action::Duplicate => play.duplicate_selected(),
+            Action::Add | Action::Delete | Action::Duplicate => {
+                // A step of its own: what is in hand ends before it.
+                self.hands.let_go(play);
+                match action {
+                    Action::Add => self.hands.add(play, self.camera, &self.view.grip),
+                    Action::Delete => play.remove_selected(),
+                    _ => play.duplicate_selected(),
+                }
+            }
             Action::SelectAll => play.select_all(),
             Action::Deselect => {
                 if !self.hands.cancel(play) {

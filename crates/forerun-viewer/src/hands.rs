@@ -24,9 +24,21 @@ use sight::Sight;
 enum Doing {
     #[default]
     Nothing,
-    Dragging(Drag),
+    /// A body is dragged. A click with Shift or Ctrl, which is no drag, picks it too, or no longer.
+    Dragging(Drag, OnClick),
     /// A throw is aimed.
     Aiming,
+    /// It was let go here (pixels), and what is thrown is still being made.
+    LetGo([f32; 2]),
+}
+
+/// What a click on a body that can be dragged does when the button is let go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum OnClick {
+    /// It has picked the body already.
+    Nothing,
+    /// Picks it besides others, or no longer.
+    Toggle,
 }
 
 /// The user's hands.
@@ -43,6 +55,8 @@ pub struct Hands {
     pointed: Option<BodyId>,
     modifiers: Modifiers,
     missiles: Missiles,
+    /// Whether a body is to be added that is still being made.
+    adding: bool,
     /// The scene that the hands are in.
     opened: u64,
 }
@@ -57,11 +71,15 @@ impl Hands {
         view: &View,
     ) {
         if self.opened != opened {
-            (self.doing, self.pointed, self.opened) = (Doing::Nothing, None, opened);
+            (self.doing, self.pointed, self.adding, self.opened) = (Doing::Nothing, None, false, opened);
         }
         self.extras = Extras::default();
         let size = [input.viewport.width.max(1) as f32, input.viewport.height.max(1) as f32];
         for event in &mut input.events {
+            if matches!(event, Event::MouseLeave) && self.let_go(play) {
+                // What began in the window does not go on as something else when the mouse comes back.
+                camera.motion.turning = false;
+            }
             self.take_event(event, play, &Sight::new(camera, size), view);
         }
         camera_hand::take(input, camera);
@@ -82,7 +100,7 @@ impl Hands {
                 *handled = true;
             }
             Event::MouseMotion { position, modifiers, handled, .. } => {
-                self.moved = true;
+                self.moved |= !*handled;
                 self.pointer = Some([position.x, position.y]);
                 self.modifiers = *modifiers;
                 *handled |= self.is_busy();
@@ -93,7 +111,7 @@ impl Hands {
                 self.release(play, sight, view);
             }
             Event::ModifiersChange { modifiers } => self.modifiers = *modifiers,
-            Event::MouseLeave if !self.is_busy() => self.pointer = None,
+            Event::MouseLeave => self.pointer = None,
             _ => {}
         }
     }
@@ -118,21 +136,30 @@ impl Hands {
             }
             return;
         };
-        if more {
-            play.selection.toggle(hit.body);
-        } else {
+        if !more {
             play.selection.pick(hit.body);
         }
-        if let Some(drag) = Drag::of(play, &hit, pointer) {
-            self.doing = Doing::Dragging(drag);
+        match Drag::of(play, &hit, pointer) {
+            // With Shift a body may be dragged along the ground, which is no click.
+            Some(drag) => {
+                self.doing = Doing::Dragging(drag, if more { OnClick::Toggle } else { OnClick::Nothing });
+            }
+            None if more => play.selection.toggle(hit.body),
+            None => {}
         }
     }
 
     /// What goes on as long as the button is held down.
     fn go_on(&mut self, play: &mut Play, sight: &Sight<'_>, view: &View) {
+        if self.adding {
+            self.add(play, sight.camera, &view.grip);
+        }
+        if let Doing::LetGo(pointer) = self.doing {
+            self.throw(play, (sight, pointer), view);
+        }
         let Some(pointer) = self.pointer else { return };
         match &mut self.doing {
-            Doing::Dragging(drag) => {
+            Doing::Dragging(drag, _) => {
                 if drag.go_on(play, sight, (pointer, self.modifiers.shift), &view.grip) {
                     self.extras.grab = drag.line(play);
                 } else {
@@ -140,7 +167,13 @@ impl Hands {
                 }
             }
             Doing::Aiming => throw::aim(&mut self.extras, play, (&mut self.missiles, view), (sight, pointer)),
-            Doing::Nothing if view.grip.tool == Tool::Throw => {}
+            Doing::Nothing if view.grip.tool == Tool::Throw => {
+                // Before it is asked for; not while the mouse is on a panel, where its size is being chosen.
+                if std::mem::take(&mut self.moved) {
+                    self.missiles.prepare(&view.grip);
+                }
+            }
+            Doing::LetGo(_) => {}
             Doing::Nothing => {
                 // A look at all bodies: not for a mouse that lies still.
                 if std::mem::take(&mut self.moved) {
@@ -154,40 +187,67 @@ impl Hands {
     fn release(&mut self, play: &mut Play, sight: &Sight<'_>, view: &View) {
         let pointer = self.pointer.unwrap_or_default();
         match std::mem::take(&mut self.doing) {
-            Doing::Dragging(mut drag) => {
+            Doing::Dragging(mut drag, on_click) => {
                 // To where the mouse was let go, although no picture has shown it there.
                 drag.go_on(play, sight, (pointer, self.modifiers.shift), &view.grip);
+                if on_click == OnClick::Toggle && !drag.moves() {
+                    play.selection.toggle(drag.body());
+                }
                 drag.end(play);
             }
-            Doing::Aiming => throw::release(play, (&mut self.missiles, view), sight, pointer),
-            Doing::Nothing => {}
+            Doing::Aiming => self.throw(play, (sight, pointer), view),
+            Doing::LetGo(_) | Doing::Nothing => {}
         }
+    }
+
+    /// Throws, as soon as there is what to throw.
+    fn throw(&mut self, play: &mut Play, (sight, pointer): (&Sight<'_>, [f32; 2]), view: &View) {
+        let thrown = throw::release(play, (&mut self.missiles, view), sight, pointer);
+        self.doing = if thrown { Doing::Nothing } else { Doing::LetGo(pointer) };
     }
 
     /// Leaves off what the button is held down for, as if it had not begun; whether there was something.
     pub fn cancel(&mut self, play: &mut Play) -> bool {
+        self.adding = false;
         match std::mem::take(&mut self.doing) {
-            Doing::Dragging(drag) => drag.cancel(play),
-            Doing::Aiming => play.forget_preview(),
+            Doing::Dragging(drag, _) => drag.cancel(play),
+            Doing::Aiming | Doing::LetGo(_) => play.forget_preview(),
             Doing::Nothing => return false,
+        }
+        true
+    }
+
+    /// The mouse is lost, or something else is done: a drag ends where it is, and what is aimed is not thrown. Whether there was something.
+    pub fn let_go(&mut self, play: &mut Play) -> bool {
+        match std::mem::take(&mut self.doing) {
+            Doing::Dragging(drag, _) => drag.end(play),
+            Doing::Aiming => play.forget_preview(),
+            doing @ (Doing::LetGo(_) | Doing::Nothing) => {
+                self.doing = doing;
+                return false;
+            }
         }
         true
     }
 
     /// Brings a body in, at the point that the camera looks at.
     pub fn add(&mut self, play: &mut Play, camera: &Camera, grip: &Grip) {
-        let sight = Sight::new(camera, [1.0, 1.0]);
         match self.missiles.def(play, grip) {
-            Ok(mut def) => {
+            Ok(None) => self.adding = true,
+            Ok(Some(mut def)) => {
+                self.adding = false;
                 let radius = missile::radius_of(&def);
-                def.pose.position = match sight.hit(play, [0.5, 0.5]) {
+                def.pose.position = match Sight::new(camera, [1.0, 1.0]).hit_ahead(play) {
                     Some(hit) => hit.point + hit.normal * radius,
                     None => camera.target,
                 };
                 let added = play.add_all("add", vec![def]);
                 play.selection.pick_coming(added);
             }
-            Err(message) => play.notice = Some(message),
+            Err(message) => {
+                self.adding = false;
+                play.notice.tell(message);
+            }
         }
     }
 
@@ -195,7 +255,7 @@ impl Hands {
     #[must_use]
     pub fn dragged(&self) -> Option<BodyId> {
         match &self.doing {
-            Doing::Dragging(drag) => drag.moves().then(|| drag.body()),
+            Doing::Dragging(drag, _) => drag.moves().then(|| drag.body()),
             _ => None,
         }
     }
@@ -207,7 +267,7 @@ impl Hands {
     }
 
     fn is_busy(&self) -> bool {
-        !matches!(self.doing, Doing::Nothing)
+        matches!(self.doing, Doing::Dragging(..) | Doing::Aiming)
     }
 }
 

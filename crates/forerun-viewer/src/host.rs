@@ -11,11 +11,13 @@ mod native;
 mod web;
 #[cfg(target_arch = "wasm32")]
 mod web_files;
+#[cfg(target_arch = "wasm32")]
+mod web_making;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
-    Choosing, FilmWriter, Host, Link, Saving, Starting, Watch, choose_scene, load_settings, save_picture,
-    save_settings, save_text, watch,
+    Choosing, FilmWriter, Host, Link, Making, Saving, Starting, Watch, choose_scene, load_settings, make,
+    save_picture, save_settings, save_text, watch,
 };
 
 #[cfg(target_arch = "wasm32")]
@@ -25,6 +27,8 @@ pub use web_files::{
     Choosing, FilmWriter, Saving, Watch, choose_scene, load_settings, save_picture, save_settings, save_text,
     watch,
 };
+#[cfg(target_arch = "wasm32")]
+pub use web_making::{Making, make};
 
 /// Whether the viewer runs in a web page: it has no folders there and takes no films, and what it is given is a copy.
 pub const IN_PAGE: bool = cfg!(target_arch = "wasm32");

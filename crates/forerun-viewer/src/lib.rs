@@ -15,6 +15,7 @@ pub mod hands;
 pub mod host;
 pub mod input;
 pub mod keeper;
+pub mod news;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
 pub mod panels;

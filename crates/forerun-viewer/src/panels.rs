@@ -26,6 +26,11 @@ use crate::settings::Settings;
 use crate::view::View;
 use palette::Palette;
 
+/// The plots are so high at first and at least (points), and at most this part of the window.
+const PLOTS: f32 = 230.0;
+const PLOTS_MIN: f32 = 120.0;
+const PLOTS_MAX: f32 = 0.6;
+
 /// What the user asked for in a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wish {
@@ -62,8 +67,6 @@ pub struct Panels {
     plots: plots::Plots,
     messages: messages::Messages,
     dressed: bool,
-    /// What they left of the window in the last picture. Points.
-    free: Option<egui::Rect>,
 }
 
 impl Panels {
@@ -79,15 +82,16 @@ impl Panels {
         egui::Panel::top("menus").show_inside(ui, |ui| top::show(ui, board, &palette, &mut wishes));
         egui::Panel::bottom("time").show_inside(ui, |ui| self.time(ui, board, &palette, &mut wishes));
         if board.view.open.plots {
+            // The scene keeps some room in a low window too.
+            let most = (PLOTS_MAX * ui.ctx().content_rect().height()).max(PLOTS_MIN);
             egui::Panel::bottom("plots")
                 .resizable(true)
-                .default_size(230.0)
-                .size_range(140.0..=700.0)
+                .default_size(PLOTS.min(most))
+                .size_range(PLOTS_MIN..=most)
                 .show_inside(ui, |ui| self.plots.show(ui, board, &palette, &mut wishes));
         }
         tools::show(ui, board.session, board.view, &mut wishes);
         inspector::show(ui, board.session, board.view);
-        self.free = Some(ui.available_rect_before_wrap());
         legend::show(ui, board);
         failure::show(ui, board, &palette, &mut wishes);
         self.scenes.show(ui.ctx(), &mut wishes);
@@ -107,14 +111,6 @@ impl Panels {
         let place = ui.add_enabled_ui(there, |ui| self.strip.show(ui, play, scene, palette)).inner;
         board.session.strip = Some(place);
         ui.add_space(2.0);
-    }
-
-    /// How much of the window's width or height they left in the last picture, whichever is less: 0 to 1.
-    #[must_use]
-    pub fn left_free(&self, ctx: &egui::Context) -> f32 {
-        let window = ctx.content_rect().size();
-        let free = self.free.map_or(window, |free| free.size());
-        (free.x / window.x).min(free.y / window.y).clamp(0.2, 1.0)
     }
 
     /// Asks for a scene file.

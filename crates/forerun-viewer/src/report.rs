@@ -247,7 +247,7 @@ impl PlayReport {
             thrown: play.added.map(id),
             samples_hash: format!("{:016x}", hash_of(&play.samples)),
             in_sight: in_sight(play, reported),
-            notice: play.notice.clone(),
+            notice: play.notice.last().cloned(),
         }
     }
 }

@@ -107,6 +107,11 @@ impl Series {
         }
     }
 
+    /// The next picture does not count how long it is after the last one: it was put off on purpose, as nothing moved.
+    pub fn leave_out_interval(&mut self) {
+        self.last_real_s = None;
+    }
+
     fn row(&mut self, play: &Play, real_s: f64) -> QueueRow {
         let picture = &play.picture;
         let snapshot = &picture.snapshot;
@@ -133,7 +138,7 @@ impl Series {
             computed: (ahead + edits).saturating_sub(self.done.computed),
             recomputed: edits.saturating_sub(self.done.recomputed),
             interval_ms: interval_s * 1e3,
-            wait_ms: play.coupled().map_or(0.0, |coupled| coupled.step_s() * 1e3),
+            wait_ms: play.coupled().map_or(0.0, |coupled| coupled.cost_s() * 1e3),
             clock_rate: picture.rate,
         };
         self.done.computed = ahead + edits;

@@ -16,6 +16,7 @@ pub use play::Play;
 pub use selection::Selection;
 
 use crate::host::{Host, SceneSource, Starting};
+use crate::news::News;
 use crate::report::StripPlace;
 
 /// The slowest that physics is made on purpose. Seconds a step.
@@ -44,7 +45,7 @@ pub struct Session {
     /// Another scene that is being read while this one still plays.
     coming: Option<(SceneSource, Starting)>,
     /// Why the scene that was asked for last did not come, and which it was.
-    pub refused: Option<(SceneSource, String)>,
+    pub refused: News<(SceneSource, String)>,
     /// How much slower every step of the physics is made, to see what a slow scene does. Seconds, 0 to 1.
     pub slow_down_s: f32,
     /// Where the timeline strip was drawn last, for scripts.
@@ -57,12 +58,21 @@ impl Session {
     #[must_use]
     pub fn new(host: Host, source: SceneSource) -> Session {
         let stage = Stage::Loading(host.start(&source));
-        Session { source, stage, opened: 1, coming: None, refused: None, slow_down_s: 0.0, strip: None, host }
+        Session {
+            source,
+            stage,
+            opened: 1,
+            coming: None,
+            refused: News::default(),
+            slow_down_s: 0.0,
+            strip: None,
+            host,
+        }
     }
 
     /// Opens another scene. The one before goes on until this one is there, and stays if it cannot be played.
     pub fn open(&mut self, source: SceneSource) {
-        self.refused = None;
+        self.refused.forget();
         let starting = self.host.start(&source);
         if matches!(self.stage, Stage::Playing(_)) {
             self.coming = Some((source, starting));
@@ -92,7 +102,7 @@ impl Session {
                 self.source = source;
                 self.opened += 1;
             }
-            Err(message) => self.refused = Some((source, message)),
+            Err(message) => self.refused.tell((source, message)),
         }
     }
 
@@ -136,7 +146,7 @@ impl Session {
             false => play.couple(&self.host),
         };
         if let Err(message) = switched {
-            play.notice = Some(message);
+            play.notice.tell(message);
         }
     }
 

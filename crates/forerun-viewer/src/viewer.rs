@@ -2,11 +2,11 @@
 
 mod keeping;
 
-use three_d::{Context, Event, FrameInput, FrameOutput, GUI};
+use three_d::{Context, Event, FrameInput, FrameOutput, GUI, egui};
 
 use crate::actions::Action;
 use crate::camera::Camera;
-use crate::capture::{Capture, Drawn, Want};
+use crate::capture::{Capture, Want};
 use crate::desk::{Desk, keys_of};
 use crate::draw::{Painter, Scenery, needs_inspection, write_failure, write_labels};
 use crate::hands::{Hands, take_flight};
@@ -95,6 +95,11 @@ impl Viewer {
         FrameOutput::default()
     }
 
+    /// The window is not looked at any more.
+    pub fn lose_focus(&mut self) {
+        self.desk().lose_focus();
+    }
+
     /// The state as plain values, for scripts.
     #[must_use]
     pub fn report(&self) -> Report {
@@ -180,7 +185,7 @@ impl Viewer {
 
     fn show_panels(&mut self, input: &mut Input) -> Vec<Wish> {
         let Viewer { gui, session, view, camera, hands, keeper, series, capture, panels, painter, .. } = self;
-        let (mut wishes, mut free) = (Vec::new(), [1.0; 2]);
+        let (mut wishes, mut free, mut middle) = (Vec::new(), [1.0; 2], [0.0; 2]);
         let scale = input.pixels_per_point * view.scale;
         gui.update(&mut input.events, input.real_s * 1e3, input.viewport, scale, |ui| {
             if let Some(scenery) = scenery(session, camera, view, hands) {
@@ -191,10 +196,12 @@ impl Viewer {
             }
             let mut board = Board { session, view, settings: &mut keeper.settings, series, capture };
             wishes = panels.show(ui, &mut board);
-            let height = ui.ctx().content_rect().height().max(1.0);
-            free = (ui.available_rect_before_wrap().size() / height).into();
+            let (window, left) = (ui.ctx().content_rect(), ui.available_rect_before_wrap());
+            free = (left.size() / window.height().max(1.0)).into();
+            let off = (left.center() - window.center()) / (0.5 * window.size()).max(egui::Vec2::splat(1.0));
+            middle = [off.x, -off.y];
         });
-        camera.set_free(free);
+        camera.set_free(free, middle);
         // What is pressed on a panel, beside its buttons, is not meant for the picture behind it.
         if gui.context().is_pointer_over_egui() {
             for event in &mut input.events {
@@ -209,11 +216,12 @@ impl Viewer {
     /// A scene that has just begun is looked at as a whole, beside its panels.
     fn frame_new_scene(&mut self) {
         let opened = self.session.opened;
-        if self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty()) {
+        // Only with the second picture it is known how large panels are on a screen of fine pixels.
+        let placed = self.pictures > 1;
+        if placed && self.framed != opened && self.session.play().is_some_and(|play| !play.samples.is_empty())
+        {
             self.perform(Action::FrameAll);
             self.camera.arrive();
-            // All of it between the panels.
-            self.camera.zoom(1.0 / self.panels.left_free(self.gui.context()));
             self.framed = opened;
         }
     }
@@ -225,10 +233,9 @@ impl Viewer {
         } else {
             target.clear(three_d::ClearState::color_and_depth(0.2, 0.22, 0.25, 1.0, 1.0));
         }
-        self.keep_picture(&target, Drawn::Scene);
         // Only a panic in the library could make this fail.
         let _ = target.write(|| self.gui.render());
-        self.keep_picture(&target, Drawn::All);
+        self.keep_picture(&target);
     }
 }
 

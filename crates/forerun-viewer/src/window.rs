@@ -109,6 +109,9 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
         Event::MainEventsCleared if pace.is_due() => window.request_redraw(),
         Event::MainEventsCleared => *control = pace.wait(),
         Event::RedrawRequested(_) => {
+            if pace.has_waited() {
+                viewer.series.leave_out_interval();
+            }
             let output = viewer.picture(inputs.generate(&context));
             let done = errand.run(&mut viewer);
             if viewer.title() != title {
@@ -116,12 +119,12 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
                 window.set_title(&title);
             }
             pace.drawn(viewer.is_still() || window.is_minimized() == Some(true));
-            let ended = output.exit || done || context.swap_buffers().is_err();
+            let ended = output.exit || done.is_some() || context.swap_buffers().is_err();
             // What a script reads is on the screen already.
             if let Some(reporter) = &mut reporter {
                 reporter.write(&viewer);
             }
-            *control = if ended { ControlFlow::Exit } else { pace.wait() };
+            *control = if ended { ControlFlow::ExitWithCode(done.unwrap_or(0)) } else { pace.wait() };
         }
         Event::WindowEvent { event, .. } => {
             pace.stir();
@@ -130,6 +133,7 @@ pub fn open(options: WindowOptions) -> Result<(), NoWindow> {
                 WindowEvent::Resized(size) => context.resize(size),
                 WindowEvent::ScaleFactorChanged { new_inner_size, .. } => context.resize(*new_inner_size),
                 WindowEvent::DroppedFile(path) => viewer.session.open(SceneSource::File(path)),
+                WindowEvent::Focused(false) => viewer.lose_focus(),
                 WindowEvent::CloseRequested => *control = ControlFlow::Exit,
                 _ => {}
             }

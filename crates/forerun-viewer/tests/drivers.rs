@@ -4,6 +4,7 @@ mod harness;
 
 use forerun::{BodyId, Change, Frame, Pose, Vec3};
 use forerun_viewer::SceneSource;
+use forerun_viewer::series::Series;
 use forerun_viewer::view::Tool;
 use harness::{BOXES, User};
 use three_d::{Key, Modifiers};
@@ -45,7 +46,7 @@ fn the_scene_goes_on_under_the_traditional_driver_and_back() {
     });
     assert_eq!(user.play().samples.len(), 5, "one more, one less");
     assert!(user.play().sample(ALONE).is_none());
-    assert_eq!(user.play().notice, None);
+    assert!(user.play().notice.last().is_some_and(|notice| notice.contains("cannot be undone any more")));
     // It flies on at the speed that it had.
     let flown = user.play().sample(HANGING).expect("there").pose.position - before[4].1;
     let seconds = (user.play().picture.time_s - time_s) as f32;
@@ -65,7 +66,35 @@ fn the_scene_goes_on_under_the_traditional_driver_and_back() {
     user.click(click);
     assert_eq!(user.play().to_undo().1, 1);
     user.pictures(3);
-    assert_eq!(user.play().notice, None);
+}
+
+#[test]
+fn a_switch_that_takes_nothing_away_says_nothing() {
+    let mut user = User::of(BOXES);
+    for _ in 0..2 {
+        user.key(Key::K, Modifiers::default());
+        user.picture(Vec::new());
+    }
+    assert!(!user.play().is_coupled());
+    assert_eq!(user.play().notice.last(), None);
+}
+
+#[test]
+fn a_picture_that_was_put_off_on_purpose_has_no_interval() {
+    let mut user = User::of(BOXES);
+    let mut series = Series::default();
+    let mut intervals = Vec::new();
+    for picture in 0..6 {
+        user.picture(Vec::new());
+        if picture == 3 {
+            user.real_s += 0.1;
+            series.leave_out_interval();
+        }
+        let (opened, real_s) = (user.session.opened, user.real_s);
+        series.take(user.play(), opened, real_s);
+        intervals.push(series.pictures.last().expect("just taken").row.interval_ms.round() as u32);
+    }
+    assert_eq!(intervals, [0, 17, 17, 0, 17, 17]);
 }
 
 #[test]
@@ -114,35 +143,47 @@ fn a_value_that_is_dragged_is_one_command_and_one_step() {
     }
     user.settle();
     assert_eq!(user.states_to(60), before);
-    assert_eq!(user.play().notice, None);
+    assert_eq!(user.play().notice.last(), None);
 }
 
 #[test]
-fn a_body_gets_another_mass_by_another_taking_its_place() {
+fn a_body_gets_another_mass_and_stays_the_one_that_it_is() {
     let mut user = User::of(BOXES);
     user.key(Key::Space, Modifiers::default());
     user.settle();
     let before = user.states_to(60);
     user.play().selection.pick(ALONE);
     for mass in [100.0, 250.0, 500.0] {
-        user.play().edit_mass(ALONE, mass);
+        user.play().edit(Change::SetMass { body: ALONE, mass });
         user.settle();
     }
-    let new = user.play().selection.active().expect("the new one is picked");
-    assert!(new != ALONE && user.play().sample(ALONE).is_none());
-    let body = user.play().body(new).expect("there").clone();
+    user.play().end_edit();
+    assert_eq!(user.play().selection.active(), Some(ALONE));
+    let body = user.play().body(ALONE).expect("there").clone();
     assert!((body.inverse_mass * 500.0 - 1.0).abs() < 1e-5);
     // A cube of 1 m: m/6.
     assert!((body.inverse_inertia * 500.0 / 6.0 - Vec3::ONE).length() < 1e-4, "{}", body.inverse_inertia);
-    user.play().edit_mass(new, 50.0);
-    user.play().end_edit();
-    user.settle();
-    let masses: Vec<u32> = user.play().samples.iter().map(|(id, _)| id.0).collect();
-    assert_eq!(masses, [0, 1, 2, 4, 5], "one drag, one body in its place");
     assert_eq!(user.play().to_undo().1, 1);
     user.ctrl(Key::Z);
     user.settle();
     assert_eq!(user.states_to(60), before);
+    // The ground has none.
+    user.play().change(Change::SetMass { body: BodyId(0), mass: 5.0 });
+    user.settle();
+    assert_eq!(user.play().to_undo().1, 0);
+    assert!(
+        user.play().notice.last().is_some_and(|notice| notice.contains("volume")),
+        "{:?}",
+        user.play().notice
+    );
+    // Under the traditional driver too, and back.
+    user.key(Key::K, Modifiers::default());
+    user.play().change(Change::SetMass { body: ALONE, mass: 20.0 });
+    user.picture(Vec::new());
+    user.key(Key::K, Modifiers::default());
+    user.settle();
+    let body = user.play().body(ALONE).expect("there").clone();
+    assert!((body.inverse_mass * 20.0 - 1.0).abs() < 1e-5, "{}", body.inverse_mass);
 }
 
 #[test]
@@ -162,7 +203,7 @@ fn what_is_refused_is_no_step_and_is_said() {
     user.play().change(Change::SetGravityScale { body: ALONE, scale: f32::NAN });
     user.settle();
     assert_eq!(user.play().to_undo().1, 0);
-    assert!(user.play().notice.as_deref().is_some_and(|notice| notice.contains("scale")));
+    assert!(user.play().notice.last().is_some_and(|notice| notice.contains("scale")));
 }
 
 #[test]
@@ -212,7 +253,7 @@ fn what_an_impossible_value_did_not_replace_can_be_undone() {
         user.settle();
     }
     user.play().end_edit();
-    assert!(user.play().notice.as_deref().is_some_and(|notice| notice.contains("scale")));
+    assert!(user.play().notice.last().is_some_and(|notice| notice.contains("scale")));
     assert_eq!(user.play().to_undo().1, 1);
     user.play().undo();
     user.settle();

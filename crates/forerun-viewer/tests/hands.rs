@@ -5,7 +5,7 @@ mod harness;
 use forerun::{BodyId, Frame, Vec3};
 use forerun_viewer::view::{Missile, Tool};
 use harness::{BOXES, User};
-use three_d::{Key, Modifiers};
+use three_d::{Event, Key, Modifiers};
 
 /// The box that stands alone.
 const ALONE: u32 = 3;
@@ -75,7 +75,7 @@ fn a_body_is_dragged_by_a_spring_and_one_undo_puts_all_back() {
     user.ctrl(Key::Y);
     user.settle();
     assert_eq!(user.pose_at(HANGING, 28).position - start, dragged);
-    assert_eq!(user.play().notice, None);
+    assert_eq!(user.play().notice.last(), None);
 }
 
 #[test]
@@ -138,6 +138,144 @@ fn escape_leaves_off_a_drag_as_if_it_had_not_begun() {
 }
 
 #[test]
+fn a_click_with_shift_picks_one_more_and_a_drag_with_shift_picks_nothing() {
+    let mut user = User::of(BOXES);
+    let (alone, hanging) = (user.pixel(ALONE), user.pixel(HANGING));
+    user.click(hanging);
+    user.modifiers.shift = true;
+    drag(&mut user, alone, [40.0, 0.0]);
+    assert_eq!(user.play().selection.bodies(), [BodyId(HANGING)]);
+    assert_eq!(user.play().to_undo().1, 1, "it was dragged");
+    let alone = user.pixel(ALONE);
+    user.click(alone);
+    assert_eq!(user.play().selection.bodies(), [BodyId(HANGING), BodyId(ALONE)]);
+    user.click(alone);
+    assert_eq!(user.play().selection.bodies(), [BodyId(HANGING)]);
+    // What nothing drags is picked at once.
+    let ground = user.press([1000.0, 700.0]);
+    user.picture(vec![ground]);
+    assert_eq!(user.play().selection.bodies(), [BodyId(HANGING), BodyId(0)]);
+}
+
+/// Presses on a body and drags it some pixels to the right, over six pictures.
+fn begin_drag(user: &mut User, body: u32) {
+    let from = user.pixel(body);
+    let press = user.press(from);
+    user.picture(vec![press]);
+    for i in 1_u8..6 {
+        user.settle();
+        let motion = user.motion([from[0] + 9.0 * f32::from(i), from[1]]);
+        user.picture(vec![motion]);
+    }
+    assert_eq!(user.hands.dragged(), Some(BodyId(body)));
+}
+
+/// The frames at which a spring holds a body.
+fn held_at(user: &mut User, body: u32, to: u64) -> Vec<u64> {
+    user.settle();
+    let snapshot = user.play().picture.snapshot.clone();
+    let held =
+        |frame: &u64| snapshot.body_at(BodyId(body), Frame(*frame)).is_some_and(|body| body.spring.is_some());
+    (0..=to).filter(held).collect()
+}
+
+#[test]
+fn no_spring_is_left_where_time_goes_back_in_a_drag() {
+    let mut user = User::of(BOXES);
+    user.pictures(20);
+    begin_drag(&mut user, HANGING);
+    user.key(Key::Home, Modifiers::default());
+    user.picture(Vec::new());
+    assert_eq!(user.hands.dragged(), None, "it ends there");
+    let held = held_at(&mut user, HANGING, 60);
+    assert!(!held.is_empty() && held.iter().all(|frame| (20..30).contains(frame)), "{held:?}");
+    // And with it the step.
+    assert_eq!(user.play().to_undo().1, 1);
+    user.ctrl(Key::Z);
+    assert!(held_at(&mut user, HANGING, 60).is_empty());
+}
+
+#[test]
+fn no_spring_is_left_on_a_body_that_is_gone_before_it_was_thrown() {
+    let mut user = User::of(BOXES);
+    user.pictures(10);
+    user.key(Key::Insert, Modifiers::default());
+    user.pictures(5);
+    let added = user.play().added.expect("added").0;
+    begin_drag(&mut user, added);
+    user.key(Key::Home, Modifiers::default());
+    user.pictures(1);
+    assert!(user.play().sample(BodyId(added)).is_none() && user.hands.dragged().is_none());
+    let held = held_at(&mut user, added, 60);
+    assert!(!held.is_empty() && held.len() < 12, "{held:?}");
+}
+
+#[test]
+fn what_is_in_hand_is_let_go_when_the_mouse_is_lost() {
+    for by_focus in [false, true] {
+        let mut user = User::of(BOXES);
+        user.pictures(3);
+        begin_drag(&mut user, HANGING);
+        if by_focus {
+            user.desk().lose_focus();
+        } else {
+            user.picture(vec![Event::MouseLeave]);
+        }
+        assert_eq!(user.hands.dragged(), None);
+        let held = held_at(&mut user, HANGING, 60);
+        assert!(held.len() < 8, "{held:?}");
+        // The mouse comes back with its button down, or seems to: the picture stays as it is.
+        let camera = user.camera;
+        for x in [600.0, 700.0] {
+            let motion = user.motion([x, 300.0]);
+            user.picture(vec![motion]);
+        }
+        assert!((camera.yaw - user.camera.yaw).abs() < 1e-6);
+        assert_eq!(user.play().to_undo().1, 1);
+        // What is aimed is not thrown.
+        user.take(Tool::Throw);
+        let press = user.press([640.0, 360.0]);
+        user.picture(vec![press]);
+        user.picture(vec![Event::MouseLeave]);
+        let release = user.release([640.0, 360.0]);
+        user.picture(vec![release]);
+        assert_eq!(user.play().added, None);
+    }
+}
+
+#[test]
+fn another_step_in_a_drag_ends_it_before() {
+    let mut user = User::of(BOXES);
+    user.pictures(3);
+    begin_drag(&mut user, HANGING);
+    user.play().selection.pick(BodyId(ALONE));
+    user.key(Key::Delete, Modifiers::default());
+    assert_eq!(user.hands.dragged(), None);
+    let labels = |user: &mut User| user.play().to_undo().0.map(|step| step.label.clone());
+    assert_eq!(labels(&mut user).as_deref(), Some("remove"));
+    user.ctrl(Key::Z);
+    assert_eq!(labels(&mut user).as_deref(), Some("drag"));
+    assert!(held_at(&mut user, HANGING, 60).len() < 8);
+}
+
+#[test]
+fn what_is_let_go_before_it_is_made_is_thrown_when_it_is() {
+    let mut user = User::of(BOXES);
+    user.take(Tool::Throw);
+    user.view.grip.missile = Missile::Torus;
+    user.click([640.0, 360.0]);
+    user.wait("it is thrown", |user| {
+        user.picture(Vec::new());
+        user.play().added.is_some()
+    });
+    user.pictures(2);
+    assert_eq!((user.play().samples.len(), user.play().to_undo().1), (6, 1));
+    user.key(Key::Insert, Modifiers::default());
+    user.pictures(2);
+    assert_eq!(user.play().samples.len(), 7);
+}
+
+#[test]
 fn what_is_thrown_flies_as_the_preview_said() {
     for missile in [Missile::Ball, Missile::Box, Missile::Torus, Missile::Selected] {
         let mut user = User::of(BOXES);
@@ -180,7 +318,7 @@ fn what_is_thrown_flies_as_the_preview_said() {
         user.ctrl(Key::Z);
         user.settle();
         assert_eq!(user.states_to(80), before, "{missile:?}");
-        assert_eq!(user.play().notice, None);
+        assert_eq!(user.play().notice.last(), None);
     }
 }
 
@@ -240,7 +378,7 @@ fn bodies_are_added_copied_selected_and_removed() {
         user.pictures(1);
         assert_eq!(user.play().samples.len(), bodies);
     }
-    assert_eq!(user.play().notice, None);
+    assert_eq!(user.play().notice.last(), None);
 }
 
 #[test]

@@ -42,6 +42,11 @@ impl Clerk {
 
     /// One picture of the panels; what was wished.
     fn picture(&mut self, events: Vec<Event>) -> Vec<Wish> {
+        self.drawn(events).0
+    }
+
+    /// What was wished, and what is written.
+    fn drawn(&mut self, events: Vec<Event>) -> (Vec<Wish>, String) {
         self.user.picture(Vec::new());
         let Clerk { user, panels, settings, series, ctx } = self;
         let User { session, view, .. } = user;
@@ -54,8 +59,13 @@ impl Clerk {
         let capture = Capture::default();
         let mut board = Board { session, view, settings, series, capture: &capture };
         let mut wishes = Vec::new();
-        let _ = ctx.run_ui(input, |ui| wishes = panels.show(ui, &mut board));
-        wishes
+        let output = ctx.run_ui(input, |ui| wishes = panels.show(ui, &mut board));
+        let written = output.shapes.iter().filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) => Some(text.galley.text()),
+            _ => None,
+        });
+        let written = written.collect::<Vec<_>>().join("\n");
+        (wishes, written)
     }
 
     fn strip(&self) -> StripPlace {
@@ -181,11 +191,11 @@ fn a_scene_that_cannot_be_read_leaves_the_one_that_plays() {
     user.session.open(SceneSource::File("no/such/scene.toml".into()));
     user.wait("the scene is refused", |user| {
         user.picture_now(Vec::new());
-        user.session.refused.is_some()
+        user.session.refused.last().is_some()
     });
     let bodies = user.play().samples.len();
     assert_eq!((user.session.opened, bodies), (1, 5));
-    let (_, why) = user.session.refused.clone().expect("it was refused");
+    let (_, why) = user.session.refused.last().cloned().expect("it was refused");
     assert!(why.contains("scene.toml"), "{why}");
 }
 
@@ -207,7 +217,7 @@ fn a_file_that_changes_is_read_again_and_a_broken_one_is_not() {
     std::fs::write(&path, format!("{BOXES}[[bodies]\n")).expect("temporary files can be written");
     user.wait("the broken file is refused", |user| {
         look(user);
-        user.session.refused.is_some()
+        user.session.refused.last().is_some()
     });
     assert_eq!(user.session.opened, 1);
     let more = "[[bodies]]\nshape = { sphere = { radius = 0.5 } }\nposition = [6.0, 0.5, 0.0]\n";
@@ -216,6 +226,24 @@ fn a_file_that_changes_is_read_again_and_a_broken_one_is_not() {
         look(user);
         user.session.opened == 2 && user.play().samples.len() == 6
     });
-    assert_eq!(user.session.refused, None);
+    assert_eq!(user.session.refused.last(), None);
     std::fs::remove_file(path).expect("it was written above");
+}
+
+#[test]
+fn what_is_not_possible_is_said_again_when_it_is_tried_again() {
+    let mut clerk = Clerk::new();
+    let shown = |clerk: &mut Clerk| clerk.drawn(Vec::new()).1.matches("no room for it").count();
+    for _ in 0..2 {
+        assert_eq!(shown(&mut clerk), 0);
+        clerk.user.play().notice.tell("There is no room for it.".to_owned());
+        // Areas are measured in their first picture.
+        shown(&mut clerk);
+        assert_eq!(shown(&mut clerk), 1);
+        clerk.user.play().notice.tell("There is no room for it.".to_owned());
+        shown(&mut clerk);
+        assert_eq!(shown(&mut clerk), 1, "once at a time");
+        clerk.user.real_s += 20.0;
+        shown(&mut clerk);
+    }
 }

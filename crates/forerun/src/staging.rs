@@ -139,6 +139,7 @@ fn change_of(command: SceneCommand) -> Change {
         SceneCommand::SetGravityScale { body, scale } => {
             Change::SetGravityScale { body: BodyId(body), scale }
         }
+        SceneCommand::SetMass { body, mass } => Change::SetMass { body: BodyId(body), mass },
         SceneCommand::SetKind { body, kind } => Change::SetKind { body: BodyId(body), kind },
         SceneCommand::Hold { body, spring } => Change::Hold { body: BodyId(body), spring },
         SceneCommand::Release { body } => Change::Release { body: BodyId(body) },

@@ -48,6 +48,7 @@ fn what_changes_nothing_is_cut_off_within_a_frame() {
         }],
         vec![Change::SetMaterial { body, material: Material::default() }],
         vec![Change::SetGravityScale { body, scale: 1.0 }],
+        vec![Change::SetMass { body, mass: 1.0 / before.body_at(body, Frame(20)).unwrap().inverse_mass }],
         vec![Change::SetForce { body, force: Vec3::ZERO, torque: Vec3::ZERO }],
         vec![Change::SetKind { body, kind: BodyKind::Dynamic }],
         vec![Change::Release { body }],

@@ -129,6 +129,7 @@ pub(crate) enum What {
     SetMaterial(u8, Size),
     SetForce(u8, Arrow, Arrow),
     SetGravityScale(u8, Size),
+    SetMass(u8, Size),
     SetKind(u8, u8),
     SetGravity(Arrow),
 }
@@ -155,7 +156,9 @@ impl What {
             What::Push(_, arrow, point) => point.iter().map(|point| point.3).chain([arrow.3]).collect(),
             What::SetVelocity(_, a, b) | What::SetForce(_, a, b) => vec![a.3, b.3],
             What::Hold(_, arrow, size) => vec![arrow.3, *size],
-            What::SetMaterial(_, size) | What::SetGravityScale(_, size) => vec![*size],
+            What::SetMaterial(_, size) | What::SetGravityScale(_, size) | What::SetMass(_, size) => {
+                vec![*size]
+            }
             What::Remove(_) | What::Release(_) | What::SetKind(..) => Vec::new(),
         }
     }
@@ -203,6 +206,7 @@ impl What {
             What::SetGravityScale(body, size) => {
                 Change::SetGravityScale { body: name(body), scale: -0.5 * size.factor() }
             }
+            What::SetMass(body, size) => Change::SetMass { body: name(body), mass: 70.0 * size.factor() },
             What::SetKind(body, kind) => {
                 let kinds = [BodyKind::Dynamic, BodyKind::Fixed, BodyKind::Kinematic];
                 Change::SetKind { body: name(body), kind: kinds[usize::from(kind) % 3] }
@@ -327,6 +331,7 @@ fn what() -> impl Strategy<Value = What> {
         2 => (name(), size()).prop_map(|(body, size)| What::SetMaterial(body, size)),
         3 => (name(), arrow(), arrow()).prop_map(|(body, f, t)| What::SetForce(body, f, t)),
         3 => (name(), size()).prop_map(|(body, size)| What::SetGravityScale(body, size)),
+        3 => (name(), size()).prop_map(|(body, size)| What::SetMass(body, size)),
         4 => (name(), 0_u8..3).prop_map(|(body, kind)| What::SetKind(body, kind)),
         1 => arrow().prop_map(What::SetGravity),
     ]

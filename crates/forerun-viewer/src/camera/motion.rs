@@ -144,8 +144,8 @@ mod tests {
     #[test]
     fn a_journey_arrives_in_time_and_gets_nearer_in_every_picture() {
         let mut camera = Camera::default();
-        camera.travel_to(Vec3::new(5.0, 1.0, 0.0), 0.5);
         let goal = Vec3::new(5.0, 1.0, 0.0);
+        camera.travel(Framed { target: goal, distance: 2.0, ..camera.framed() });
         let mut away = (camera.target - goal).length();
         for _ in 0..20 {
             camera.go_on(0.02);

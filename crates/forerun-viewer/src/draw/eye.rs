@@ -16,6 +16,7 @@ const FAR: f32 = 30.0;
 pub(super) struct Eye {
     pub(super) viewport: Viewport,
     pub(super) position: Vec3,
+    /// To the middle of the picture, which need not be where the target is. Its depth is 1.
     pub(super) forward: Vec3,
     /// Half the picture's width and height at distance 1.
     pub(super) across: Vec3,
@@ -39,13 +40,15 @@ impl Eye {
             vector(camera.up()),
         );
         let projection = three_d::perspective(three_d::radians(camera.angle()), aspect, near, far);
+        let ([x, y], across, upwards) = (camera.centre, camera.right() * (half * aspect), camera.up() * half);
+        let shift = Mat4::from_translation(three_d::vec3(x, y, 0.0));
         Eye {
             viewport,
             position,
-            forward: camera.forward(),
-            across: camera.right() * (half * aspect),
-            upwards: camera.up() * half,
-            view_projection: projection * view,
+            forward: camera.forward() - across * x - upwards * y,
+            across,
+            upwards,
+            view_projection: shift * projection * view,
             near,
             far,
         }

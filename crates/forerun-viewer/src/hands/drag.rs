@@ -53,7 +53,7 @@ impl Drag {
         Some([pose.position + pose.rotation * self.anchor, self.target])
     }
 
-    /// The mouse is here now, with Shift or without; whether the body is still there.
+    /// The mouse is here now, with Shift or without; whether the drag goes on. It has ended when the body is not there any more, or time went back.
     pub(super) fn go_on(
         &mut self,
         play: &mut Play,
@@ -61,8 +61,8 @@ impl Drag {
         (pointer, along_ground): ([f32; 2], bool),
         grip: &Grip,
     ) -> bool {
-        if play.sample(self.body).is_none() {
-            play.end();
+        if play.sample(self.body).is_none() || play.is_before(self.last) {
+            self.finish(play);
             return false;
         }
         let [x, y] = [pointer[0] - self.pressed[0], pointer[1] - self.pressed[1]];
@@ -111,22 +111,27 @@ impl Drag {
     }
 
     fn let_go(&mut self, play: &mut Play) {
-        if std::mem::take(&mut self.held) {
-            play.give(Change::Release { body: self.body });
+        // The traditional driver knows only those who are there, and no spring holds the others.
+        let there = !play.is_coupled() || play.sample(self.body).is_some();
+        if std::mem::take(&mut self.held) && there {
+            play.give_after(self.last, Change::Release { body: self.body });
         }
+    }
+
+    /// Whether there is something to be taken back of it.
+    fn finish(&mut self, play: &mut Play) -> bool {
+        self.let_go(play);
+        play.end()
     }
 
     /// The mouse lets go.
     pub(super) fn end(mut self, play: &mut Play) {
-        self.let_go(play);
-        play.end();
+        self.finish(play);
     }
 
     /// As if it had never been taken.
-    pub(super) fn cancel(self, play: &mut Play) {
-        let moves = self.moves;
-        self.end(play);
-        if moves {
+    pub(super) fn cancel(mut self, play: &mut Play) {
+        if self.finish(play) {
             play.undo();
         }
     }

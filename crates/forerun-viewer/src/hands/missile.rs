@@ -1,10 +1,9 @@
 //! Missile: what is thrown or added, and how it has to be thrown to get where it is aimed.
 
-use std::collections::BTreeMap;
-
 use forerun::geometry::shape::mesh_make;
 use forerun::{BodyDef, BodyKind, Mass, Shape, Vec3};
 
+use crate::host::{Making, make};
 use crate::session::Play;
 use crate::view::{Grip, Missile};
 
@@ -14,39 +13,73 @@ const TORUS: [f32; 2] = [0.3, 0.7];
 /// Sizes are made to steps of this, so that not every motion of a slider is another mesh. Metres.
 const SIZE_STEP_M: f32 = 0.01;
 
-/// What can be thrown. Meshes are kept: to make their fields takes some time.
+/// So many tori are kept.
+const TORI_MAX: usize = 8;
+
+/// What can be thrown. Meshes are made elsewhere than on the display's thread, where that is possible, and kept: their fields take some time.
 #[derive(Debug, Default)]
 pub(super) struct Missiles {
-    /// By steps of size.
-    tori: BTreeMap<u32, Shape>,
+    /// By steps of size. The one that was used last comes last.
+    tori: Vec<(u32, Shape)>,
+    /// One at a time.
+    making: Option<(u32, Making<Result<Shape, String>>)>,
 }
 
 impl Missiles {
-    /// What is to be thrown, at the origin and at rest.
+    /// What is to be thrown, at the origin and at rest; none while it is being made.
     ///
     /// # Errors
     /// What is missing, and how to get it.
-    pub(super) fn def(&mut self, play: &Play, grip: &Grip) -> Result<BodyDef, String> {
-        let steps = (grip.size / SIZE_STEP_M).round().clamp(1.0, 1e4);
-        let size = steps * SIZE_STEP_M;
+    pub(super) fn def(&mut self, play: &Play, grip: &Grip) -> Result<Option<BodyDef>, String> {
+        let steps = steps_of(grip);
+        let size = steps as f32 * SIZE_STEP_M;
         let shape = match grip.missile {
             Missile::Ball => Shape::sphere(size).map_err(|error| error.to_string())?,
             Missile::Box => Shape::cuboid(Vec3::splat(size)).map_err(|error| error.to_string())?,
-            Missile::Torus => self.torus(steps as u32)?,
-            Missile::Selected => return selected(play),
+            Missile::Torus => match self.torus(steps)? {
+                Some(torus) => torus,
+                None => return Ok(None),
+            },
+            Missile::Selected => return selected(play).map(Some),
         };
-        Ok(BodyDef { mass: Mass::Density(grip.density), ..BodyDef::new(shape) })
+        Ok(Some(BodyDef { mass: Mass::Density(grip.density), ..BodyDef::new(shape) }))
     }
 
-    fn torus(&mut self, steps: u32) -> Result<Shape, String> {
-        if let Some(made) = self.tori.get(&steps) {
-            return Ok(made.clone());
+    /// Begins to make what has to be made before it can be thrown.
+    pub(super) fn prepare(&mut self, grip: &Grip) {
+        if grip.missile == Missile::Torus {
+            // What goes wrong is said when it is to be thrown.
+            let _ = self.torus(steps_of(grip));
         }
-        let [tube, radius] = TORUS.map(|part| part * steps as f32 * SIZE_STEP_M);
-        let made: Shape = mesh_make::torus(radius, tube, 24, 12).map_err(|error| error.to_string())?.into();
-        self.tori.insert(steps, made.clone());
-        Ok(made)
     }
+
+    fn torus(&mut self, steps: u32) -> Result<Option<Shape>, String> {
+        if let Some(at) = self.tori.iter().position(|(of, _)| *of == steps) {
+            self.tori[at..].rotate_left(1);
+            return Ok(self.tori.last().map(|(_, torus)| torus.clone()));
+        }
+        let (of, making) = self.making.get_or_insert_with(|| (steps, make(move || torus(steps))));
+        let Some(made) = making.poll() else { return Ok(None) };
+        let of = *of;
+        self.making = None;
+        let made = made.and_then(|made| made);
+        // One of another size, which nobody wants any more, is kept all the same.
+        if let Ok(torus) = &made {
+            self.tori.push((of, torus.clone()));
+            let surplus = self.tori.len().saturating_sub(TORI_MAX);
+            self.tori.drain(..surplus);
+        }
+        if of == steps { made.map(Some) } else { Ok(None) }
+    }
+}
+
+fn steps_of(grip: &Grip) -> u32 {
+    (grip.size / SIZE_STEP_M).round().clamp(1.0, 1e4) as u32
+}
+
+fn torus(steps: u32) -> Result<Shape, String> {
+    let [tube, radius] = TORUS.map(|part| part * steps as f32 * SIZE_STEP_M);
+    mesh_make::torus(radius, tube, 24, 12).map(Shape::from).map_err(|error| error.to_string())
 }
 
 /// One like the selected body.
@@ -89,6 +122,25 @@ pub(super) fn lead(way: Vec3, gravity: Vec3, speed: f32) -> Option<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_torus_is_made_elsewhere_and_only_the_last_are_kept() {
+        let mut missiles = Missiles::default();
+        assert!(missiles.torus(30).is_ok_and(|torus| torus.is_none()), "it is not made while one waits");
+        let mut of_size = |steps: u32| {
+            let wait = std::time::Duration::from_millis(2);
+            let made = (0..5000).find_map(|_| {
+                std::thread::sleep(wait);
+                missiles.torus(steps).expect("there is such a torus")
+            });
+            let radius = made.expect("within ten seconds").radius_about(Vec3::ZERO);
+            assert!((radius - 0.01 * steps as f32).abs() < 1e-3 * radius, "{radius} of {steps}");
+            missiles.tori.len()
+        };
+        let kept: Vec<usize> = (30..42).map(&mut of_size).collect();
+        assert_eq!(kept, [1, 2, 3, 4, 5, 6, 7, 8, 8, 8, 8, 8]);
+        assert_eq!(of_size(36), 8, "it was still there");
+    }
 
     #[test]
     fn what_is_led_gets_where_it_is_aimed_at_the_speed_that_it_is_given() {

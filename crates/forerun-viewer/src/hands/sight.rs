@@ -33,6 +33,12 @@ impl Sight<'_> {
         play.picture.snapshot.cast_ray(play.picture.time_s, &self.ray(pointer), FAR_M)
     }
 
+    /// The first body before the target, or at it, or behind it.
+    pub(super) fn hit_ahead(&self, play: &Play) -> Option<BodyHit> {
+        let ray = Ray { origin: self.camera.eye(), direction: self.camera.forward() };
+        play.picture.snapshot.cast_ray(play.picture.time_s, &ray, FAR_M)
+    }
+
     /// Where the ray through a place of the picture meets a plane.
     pub(super) fn on_plane(&self, pointer: [f32; 2], point: Vec3, normal: Vec3) -> Option<Vec3> {
         /// A plane that is seen so flat (sine of the angle) has no place under the mouse to speak of.

@@ -17,7 +17,7 @@ const AWAY: f32 = 8.0;
 /// The preview shows so many bodies besides the one that is thrown.
 const OTHERS_MAX: usize = 32;
 
-/// What would be thrown now.
+/// What would be thrown now, and at what; none while it is being made.
 ///
 /// # Errors
 /// Why nothing can be thrown.
@@ -26,8 +26,8 @@ fn missile(
     (missiles, view): (&mut Missiles, &View),
     sight: &Sight<'_>,
     pointer: [f32; 2],
-) -> Result<(BodyDef, Vec3), String> {
-    let mut def = missiles.def(play, &view.grip)?;
+) -> Result<Option<(BodyDef, Vec3)>, String> {
+    let Some(mut def) = missiles.def(play, &view.grip)? else { return Ok(None) };
     let ray = sight.ray(pointer);
     let hit = sight.hit(play, pointer);
     let speed = view.grip.speed.max(0.01);
@@ -41,7 +41,7 @@ fn missile(
     def.pose.position = ray.origin + ray.direction * start;
     let led = hit.and_then(|_| lead(aimed - def.pose.position, gravity, speed));
     def.velocity = led.unwrap_or(ray.direction * speed);
-    Ok((def, aimed))
+    Ok(Some((def, aimed)))
 }
 
 /// Shows what is aimed, and asks what would come of it.
@@ -52,7 +52,8 @@ pub(super) fn aim(
     (sight, pointer): (&Sight<'_>, [f32; 2]),
 ) {
     match missile(play, (missiles, view), sight, pointer) {
-        Ok((def, aimed)) => {
+        Ok(None) => {}
+        Ok(Some((def, aimed))) => {
             extras.held = Some((def.shape.clone(), def.pose));
             extras.aim = Some([def.pose.position, aimed]);
             if view.ghosts.preview {
@@ -63,22 +64,24 @@ pub(super) fn aim(
                 extras.preview = tracks(play, (body, &shape));
             }
         }
-        Err(message) => play.notice = Some(message),
+        Err(message) => play.notice.tell(message),
     }
 }
 
-/// Throws.
+/// Throws; whether it is done with, and nothing has still to be made for it.
 pub(super) fn release(
     play: &mut Play,
     missiles_and_view: (&mut Missiles, &View),
     sight: &Sight<'_>,
     pointer: [f32; 2],
-) {
+) -> bool {
     match missile(play, missiles_and_view, sight, pointer) {
-        Ok((def, _)) => drop(play.add_all("throw", vec![def])),
-        Err(message) => play.notice = Some(message),
+        Ok(None) => return false,
+        Ok(Some((def, _))) => drop(play.add_all("throw", vec![def])),
+        Err(message) => play.notice.tell(message),
     }
     play.forget_preview();
+    true
 }
 
 /// What is known of what would come of it: first the one that is thrown, then whom it reaches.

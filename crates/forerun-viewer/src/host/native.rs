@@ -1,9 +1,11 @@
 //! The desktop: physics in a thread, scenes and settings in files.
 
 mod files;
+mod making;
 mod pictures;
 
 pub use files::{Choosing, Watch, choose_scene, load_settings, save_settings, watch};
+pub use making::{Making, make};
 pub use pictures::{FilmWriter, Saving, save_picture, save_text};
 
 use std::sync::Arc;

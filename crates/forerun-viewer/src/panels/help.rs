@@ -3,7 +3,7 @@
 use three_d::egui::{self, Align2, Frame, RichText, Ui};
 
 use super::Wish;
-use crate::actions::{Action, SHORTCUTS};
+use crate::actions::{Action, SHORTCUTS, Shortcut};
 use crate::settings::Settings;
 use crate::view::View;
 
@@ -23,35 +23,56 @@ pub(super) const MOUSE: &[(&str, &str)] = &[
     ("Drop a file", "open it"),
 ];
 
+/// So wide is a column of the list with its gap. Points.
+const COLUMN: f32 = 400.0;
+
 pub(super) fn show(ctx: &egui::Context, view: &mut View) {
     let room = ctx.content_rect();
+    let columns = ((room.width() - 40.0) / COLUMN).clamp(1.0, 3.0) as usize;
     egui::Window::new("Keys and mouse")
         .open(&mut view.open.help)
         .collapsible(false)
         .resizable(false)
-        .default_width(1120.0)
+        .default_width(COLUMN * columns as f32)
+        .default_height(room.height() - 80.0)
         .pivot(Align2::CENTER_CENTER)
         .default_pos(room.center())
         .show(ctx, |ui| {
-            egui::ScrollArea::both().max_height((room.height() - 160.0).max(120.0)).show(ui, |ui| {
-                let half = SHORTCUTS.len().div_ceil(2);
+            let height = (room.height() - 160.0).max(120.0);
+            egui::ScrollArea::both().max_height(height).max_width(room.width() - 40.0).show(ui, |ui| {
                 ui.horizontal_top(|ui| {
-                    for (i, column) in SHORTCUTS.chunks(half).enumerate() {
-                        let rows = column.iter().map(|shortcut| (shortcut.keys(), shortcut.help));
-                        table(ui, &format!("keys {i}"), rows);
+                    for tables in tables().chunks(3_usize.div_ceil(columns)) {
+                        ui.vertical(|ui| {
+                            for (i, rows) in tables {
+                                table(ui, &format!("keys {i}"), rows);
+                            }
+                        });
                         ui.add_space(16.0);
                     }
-                    table(ui, "mouse", MOUSE.iter().map(|(what, does)| ((*what).to_owned(), *does)));
                 });
             });
         });
 }
 
-fn table(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'static str)>) {
+/// What is done, and how.
+type Row = (String, &'static str);
+
+/// Keys in two tables, and what the mouse does, with their numbers.
+fn tables() -> [(usize, Vec<Row>); 3] {
+    let (first, second) = SHORTCUTS.split_at(SHORTCUTS.len().div_ceil(2));
+    let keys = |of: &'static [Shortcut]| of.iter().map(|key| (key.keys(), key.help)).collect();
+    [
+        (0, keys(first)),
+        (1, keys(second)),
+        (2, MOUSE.iter().map(|(what, does)| ((*what).to_owned(), *does)).collect()),
+    ]
+}
+
+fn table(ui: &mut Ui, id: &str, rows: &[Row]) {
     egui::Grid::new(id).striped(true).num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
         for (keys, help) in rows {
             ui.label(RichText::new(keys).strong());
-            ui.label(help);
+            ui.label(*help);
             ui.end_row();
         }
     });

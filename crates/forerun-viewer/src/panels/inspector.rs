@@ -2,8 +2,10 @@
 
 mod euler;
 
+use std::ops::RangeInclusive;
+
 use forerun::{Body, BodyId, BodyKind, Change, Material, Pose, Sample, Shape, Vec3};
-use three_d::egui::{self, ComboBox, DragValue, Grid, Response, Ui};
+use three_d::egui::{self, ComboBox, DragValue, Grid, Response, Ui, emath};
 
 use crate::session::Play;
 use crate::session::Session;
@@ -42,7 +44,7 @@ fn show_body(ui: &mut Ui, play: &mut Play, id: BodyId) {
         shape_name(&body.shape)
     });
     ui.weak(state_of(play, id));
-    Grid::new("body").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
+    Grid::new("body").num_columns(2).spacing([4.0, 4.0]).show(ui, |ui| {
         motion(ui, play, id, &sample);
         matter(ui, play, id, &body);
     });
@@ -85,10 +87,13 @@ fn motion(ui: &mut Ui, play: &mut Play, id: BodyId, sample: &Sample) {
 /// What it is made of.
 fn matter(ui: &mut Ui, play: &mut Play, id: BodyId, body: &Body) {
     if body.is_dynamic() {
-        let mut mass = 1.0 / body.inverse_mass;
+        let mut mass = match play.edited() {
+            Some(Change::SetMass { body, mass }) if *body == id => *mass,
+            _ => 1.0 / body.inverse_mass,
+        };
         let speed = 0.01 * f64::from(mass);
         if row(ui, "mass", DragValue::new(&mut mass).speed(speed).range(1e-6..=1e9).suffix(" kg")) {
-            play.edit_mass(id, mass);
+            play.edit(Change::SetMass { body: id, mass });
         }
     }
     let mut material = match play.edited() {
@@ -133,7 +138,7 @@ fn matter(ui: &mut Ui, play: &mut Play, id: BodyId, body: &Body) {
 /// What all bodies have in common.
 fn show_scene(ui: &mut Ui, play: &mut Play) {
     ui.label("Scene");
-    Grid::new("scene").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
+    Grid::new("scene").num_columns(2).spacing([4.0, 4.0]).show(ui, |ui| {
         let mut gravity = match play.edited() {
             Some(Change::SetGravity { gravity }) => *gravity,
             _ => play.gravity(),
@@ -156,11 +161,14 @@ struct Number {
 fn vector(ui: &mut Ui, name: &str, value: &mut Vec3, number: Number) -> bool {
     ui.label(name);
     let mut changed = false;
-    for (axis, part) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
-        let widget = DragValue::new(part).speed(number.speed).max_decimals(3);
-        let response = ui.add(widget).on_hover_text(format!("{name} {axis},{}", number.suffix));
-        changed |= said(&response);
-    }
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for (axis, part) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
+            let widget = DragValue::new(part).speed(number.speed).max_decimals(3).custom_formatter(plain);
+            let response = ui.add(widget).on_hover_text(format!("{name} {axis},{}", number.suffix));
+            changed |= said(&response);
+        }
+    });
     ui.end_row();
     changed && value.is_finite()
 }
@@ -171,6 +179,15 @@ fn row(ui: &mut Ui, name: &str, widget: DragValue<'_>) -> bool {
     let changed = said(&ui.add(widget.max_decimals(4)));
     ui.end_row();
     changed
+}
+
+/// As numbers are written, but without the sign of what is shown as nothing.
+fn plain(number: f64, decimals: RangeInclusive<usize>) -> String {
+    let text = emath::format_with_decimals_in_range(number, decimals);
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_owned(),
+        _ => text,
+    }
 }
 
 fn said(response: &Response) -> bool {
@@ -214,4 +231,17 @@ fn state_of(play: &Play, id: BodyId) -> String {
     let ahead = snapshot.known_to(id).0.saturating_sub(frame.0);
     let certainty = play.sample(id).map(|sample| format!("{:?}", sample.certainty).to_lowercase());
     format!("{rests}, known {ahead} frames ahead, {}", certainty.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_shown_as_nothing_has_no_sign() {
+        assert_eq!(plain(-0.0, 1..=3), "0.0");
+        assert_eq!(plain(-0.0001, 2..=2), "0.00");
+        assert_eq!(plain(-0.01, 2..=2), "-0.01");
+        assert_eq!(plain(-9.81, 2..=2), "-9.81");
+    }
 }

@@ -19,14 +19,21 @@ struct Message {
     until_s: f64,
 }
 
+#[derive(Debug, Default)]
+struct Heard {
+    /// The scene of the notices.
+    scene: u64,
+    notices: u64,
+    refused: u64,
+    kept: u64,
+}
+
 /// The messages that are shown.
 #[derive(Debug, Default)]
 pub(super) struct Messages {
     shown: Vec<Message>,
-    /// What was heard last from each source: what is new is told once.
-    notice: Option<String>,
-    refused: Option<String>,
-    kept: Option<Result<String, String>>,
+    /// How much was heard from each source: what is new is told once.
+    heard: Heard,
 }
 
 impl Messages {
@@ -56,32 +63,26 @@ impl Messages {
     }
 
     fn hear(&mut self, board: &Board<'_>, now_s: f64) {
-        let notice = board.session.play().and_then(|play| play.notice.clone());
-        if notice != self.notice {
-            self.notice.clone_from(&notice);
-            self.say(notice, true, now_s);
+        let heard = &mut self.heard;
+        if heard.scene != board.session.opened {
+            // Its notices are counted anew.
+            (heard.scene, heard.notices) = (board.session.opened, 0);
         }
-        let refused = board
-            .session
-            .refused
-            .as_ref()
-            .map(|(source, why)| format!("{} was not opened: {why}", source.name()));
-        if refused != self.refused {
-            self.refused.clone_from(&refused);
-            self.say(refused, true, now_s);
-        }
-        if board.capture.message != self.kept {
-            self.kept.clone_from(&board.capture.message);
-            match self.kept.clone() {
-                Some(Ok(place)) => self.say(Some(format!("Saved: {place}")), false, now_s),
-                Some(Err(why)) => self.say(Some(why), true, now_s),
-                None => {}
-            }
+        let notice = board.session.play().and_then(|play| play.notice.since(&mut heard.notices)).cloned();
+        let refused = board.session.refused.since(&mut heard.refused);
+        let refused = refused.map(|(source, why)| format!("{} was not opened: {why}", source.name()));
+        let kept = board.capture.message.since(&mut heard.kept).cloned();
+        notice.into_iter().chain(refused).for_each(|text| self.say(text, true, now_s));
+        match kept {
+            Some(Ok(place)) => self.say(format!("Saved: {place}"), false, now_s),
+            Some(Err(why)) => self.say(why, true, now_s),
+            None => {}
         }
     }
 
-    fn say(&mut self, text: Option<String>, bad: bool, now_s: f64) {
-        let Some(text) = text else { return };
+    fn say(&mut self, text: String, bad: bool, now_s: f64) {
+        // What is still shown stays longer: a drag may say the same in every picture.
+        self.shown.retain(|message| message.text != text);
         if self.shown.len() == AT_ONCE {
             self.shown.remove(0);
         }

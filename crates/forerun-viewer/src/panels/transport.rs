@@ -12,9 +12,30 @@ use crate::session::Play;
 const SPEEDS: [(f64, &str); 7] =
     [(0.125, "1/8x"), (0.25, "1/4x"), (0.5, "1/2x"), (1.0, "1x"), (2.0, "2x"), (4.0, "4x"), (8.0, "8x")];
 
-/// What is told only where there is room for it. Points.
-const FRAME_FROM: f32 = 90.0;
-const PHYSICS_FROM: f32 = 250.0;
+/// With less room beside the time the frame is not told. Points.
+const FRAME_ROOM: f32 = 400.0;
+/// With less room physics is told of in few words. Points.
+const WORDS_ROOM: f32 = 280.0;
+/// With less room, on a phone, in none: its colour stands for it.
+const FEW_ROOM: f32 = 120.0;
+
+/// How much is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Words {
+    All,
+    Few,
+    None,
+}
+
+impl Words {
+    fn in_room(room: f32) -> Words {
+        match room {
+            room if room > WORDS_ROOM => Words::All,
+            room if room > FEW_ROOM => Words::Few,
+            _ => Words::None,
+        }
+    }
+}
 
 /// How physics is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,16 +50,19 @@ enum Physics {
 
 pub(super) fn show(ui: &mut Ui, play: &mut Play, palette: &Palette, wishes: &mut Vec<Wish>) {
     ui.horizontal(|ui| {
-        buttons(ui, play, wishes);
+        ui.scope(|ui| buttons(ui, play, wishes));
         ui.add_space(6.0);
         ui.add_enabled_ui(!play.is_coupled(), |ui| speeds(ui, play));
         ui.add_space(6.0);
         let shown = format!("{:>8.3} s", play.picture.time_s);
         ui.label(RichText::new(shown).monospace().strong().size(15.0)).on_hover_text("Display time");
-        if ui.available_width() > FRAME_FROM {
+        let room = ui.available_width();
+        if room > FRAME_ROOM {
             ui.label(RichText::new(format!("frame {}", play.picture.frame.0)).weak());
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| physics(ui, play, palette));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            physics(ui, play, palette, Words::in_room(room));
+        });
     });
 }
 
@@ -88,13 +112,15 @@ fn speeds(ui: &mut Ui, play: &mut Play) {
     }
 }
 
-fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
+fn physics(ui: &mut Ui, play: &Play, palette: &Palette, words: Words) {
     let picture = &play.picture;
     if let Some(coupled) = play.coupled() {
         let step_ms = 1e3 * coupled.step_s();
-        let room = ui.available_width() > PHYSICS_FROM;
-        let text =
-            if room { format!("coupled: steps of {step_ms:.1} ms") } else { format!("{step_ms:.1} ms") };
+        let text = match words {
+            Words::All => format!("coupled: steps of {step_ms:.1} ms"),
+            Words::Few => format!("steps of {step_ms:.0} ms"),
+            Words::None => format!("{step_ms:.0} ms"),
+        };
         ui.label(text)
             .on_hover_text("Physics and display take turns: who shows a picture waits for its step.");
         return;
@@ -115,13 +141,16 @@ fn physics(ui: &mut Ui, play: &Play, palette: &Palette) {
         }
     };
     let ahead_s = ahead as f64 * play.frame_seconds();
-    let text = format!("physics {word}, {ahead} frames ({ahead_s:.2} s) ahead");
-    let label = (ui.available_width() > PHYSICS_FROM).then(|| ui.label(&text));
-    let (dot, response) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+    let text = match words {
+        Words::All => format!("physics {word}, {ahead} frames ({ahead_s:.2} s) ahead"),
+        Words::Few => format!("{ahead_s:.2} s ahead"),
+        Words::None => String::new(),
+    };
+    let label = ui.label(text);
+    let (dot, beside) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().circle_filled(dot.center(), 4.5, colour);
     let memory = picture.stats.state_bytes as f64 / 1_048_576.0;
-    let bodies = play.samples.len();
     label
-        .unwrap_or(response)
-        .on_hover_text(format!("{text}\n{tip}\n{bodies} bodies, {memory:.1} MiB of stored states"));
+        .union(beside)
+        .on_hover_text(format!("{tip}\n{} bodies, {memory:.1} MiB of stored states", play.samples.len()));
 }

@@ -1,9 +1,10 @@
 //! Acts: what the user does to a scene. Every one is a command, and what belongs together is one step to be taken back.
 
-use forerun::{BodyDef, BodyId, Change, Command, CommandKey, Frame, Mass, Vec3};
+use forerun::{BodyDef, BodyId, Change, Command, CommandKey, DriverError, Frame, Mass, Vec3};
 
 use super::Play;
 use super::history::Step;
+use crate::news::News;
 
 /// How much of its own size a copy stands beside what it is a copy of.
 const BESIDE: f32 = 1.1;
@@ -42,9 +43,9 @@ impl Play {
         self.history.begin(label);
     }
 
-    /// Ends the step.
-    pub fn end(&mut self) {
-        self.history.end();
+    /// Ends the step; whether there is one, with something given in it.
+    pub fn end(&mut self) -> bool {
+        self.history.end()
     }
 
     /// One more command of the step that has begun. Nothing when it could not be given, which the notice says, or in coupled mode, where it is
@@ -52,20 +53,34 @@ impl Play {
     pub fn give(&mut self, change: Change) -> Option<Last> {
         if let Some(coupled) = &mut self.coupled {
             if let Err(error) = coupled.change(&change) {
-                self.notice = Some(error.to_string());
+                self.notice.tell(error.to_string());
             }
             return None;
         }
-        match self.driver.change(change.clone()) {
+        let given = self.driver.change(change.clone());
+        self.given(given, change)
+    }
+
+    fn given(&mut self, given: Result<CommandKey, DriverError>, change: Change) -> Option<Last> {
+        match given {
             Ok(key) => {
                 self.history.give(Command { key, change });
                 Some(Last { key })
             }
             Err(error) => {
-                self.notice = Some(error.to_string());
+                self.notice.tell(error.to_string());
                 None
             }
         }
+    }
+
+    /// One more command of the step, after what was changed last, however far time has gone back since.
+    pub fn give_after(&mut self, last: Option<Last>, change: Change) -> Option<Last> {
+        let Some(Last { key }) = last.filter(|last| self.is_before(Some(*last))) else {
+            return self.give(change);
+        };
+        let given = self.driver.change_at(key.frame, change.clone());
+        self.given(given, change)
     }
 
     /// In place of what the step changed last, this: one command, however often it is said.
@@ -77,6 +92,12 @@ impl Play {
         }
         self.note(told);
         last
+    }
+
+    /// Whether time has gone back to before what was changed last.
+    #[must_use]
+    pub fn is_before(&self, last: Option<Last>) -> bool {
+        self.coupled.is_none() && last.is_some_and(|last| self.edit_frame() < last.key.frame)
     }
 
     /// The same, as long as what was changed last is still ahead of what is shown; another command after that.
@@ -205,8 +226,10 @@ impl Play {
     }
 }
 
-fn told(result: Result<(), forerun::DriverError>, notice: &mut Option<String>) -> bool {
-    *notice = result.as_ref().err().map(ToString::to_string).or(notice.take());
+fn told(result: Result<(), forerun::DriverError>, notice: &mut News<String>) -> bool {
+    if let Err(error) = &result {
+        notice.tell(error.to_string());
+    }
     result.is_ok()
 }
 
@@ -227,6 +250,7 @@ pub(super) fn label_of(change: &Change) -> &'static str {
         Change::SetMaterial { .. } => "set surface",
         Change::SetForce { .. } => "set force",
         Change::SetGravityScale { .. } => "set gravity scale",
+        Change::SetMass { .. } => "set mass",
         Change::SetKind { .. } => "set kind",
         Change::SetGravity { .. } => "set gravity",
     }

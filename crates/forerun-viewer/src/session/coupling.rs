@@ -29,6 +29,10 @@ impl Play {
                 .map_err(|error| error.to_string())?;
         self.coupled = Some(coupled.with_stage_times());
         self.rewinding = false;
+        if self.to_undo().1 + self.to_redo().1 > 0 {
+            let why = "the other driver goes on from the states that are shown, and knows no commands";
+            self.notice.tell(format!("What was done so far cannot be undone any more: {why}."));
+        }
         self.forget_the_future();
         Ok(())
     }
@@ -62,13 +66,14 @@ impl Play {
         self.tell_speed();
     }
 
-    /// One cycle of the traditional driver: the step, and then what there is to show.
-    pub(super) fn show_coupled(&mut self) {
+    /// One cycle of the traditional driver, at the session's clock (seconds): the step, and then what there is to show. It takes as long by that clock as it
+    /// did by the machine's: a film, whose clock goes on by one picture at a time, stutters as the window does.
+    pub(super) fn show_coupled(&mut self, real_s: f64) {
         let Some(coupled) = &mut self.coupled else { return };
         if self.paused {
             coupled.pause();
-        } else {
-            coupled.show();
+        } else if coupled.is_due(real_s) {
+            coupled.show_at(real_s);
         }
         self.picture = coupled.picture();
         coupled.sample_all(&mut self.samples);

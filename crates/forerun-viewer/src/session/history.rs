@@ -39,10 +39,11 @@ impl History {
         self.open = true;
     }
 
-    /// What is given from now on does not belong to the step any more. A step in which nothing was given never was.
-    pub fn end(&mut self) {
-        self.open = false;
-        self.done.pop_if(|step| step.commands.is_empty());
+    /// What is given from now on does not belong to the step any more. A step in which nothing was given never was: whether one ends that is to be
+    /// taken back next.
+    pub fn end(&mut self) -> bool {
+        let was_open = std::mem::take(&mut self.open);
+        self.done.pop_if(|step| step.commands.is_empty()).is_none() && was_open
     }
 
     /// A command was given. What was taken back before cannot be done again.
@@ -214,9 +215,10 @@ mod tests {
         assert_eq!(labels(&history), (None, 0, 0));
         history.give(command(12, 7));
         assert_eq!(labels(&history), (Some("nothing"), 1, 0), "it was still open");
-        history.end();
+        assert!(history.end());
         history.begin("nothing at all");
-        history.end();
+        assert!(!history.end(), "there is no such step to be taken back");
+        assert!(!history.end(), "and the one before has ended long ago");
         assert_eq!(labels(&history), (Some("nothing"), 1, 0));
     }
 }

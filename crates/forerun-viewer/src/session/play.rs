@@ -11,6 +11,7 @@ use super::history::History;
 use super::questions::Questions;
 use super::selection::Selection;
 use crate::host::{Link, Started};
+use crate::news::News;
 
 /// How fast a rewind goes, against the clock.
 const REWIND_SPEED: f64 = 1.0;
@@ -32,8 +33,8 @@ pub struct Play {
     pub samples: Vec<(BodyId, Sample)>,
     /// What the user has picked.
     pub selection: Selection,
-    /// What the last thing that was not possible was, for the user to read.
-    pub notice: Option<String>,
+    /// What was not possible, for the user to read.
+    pub notice: News<String>,
     /// Whether display time stands still because the user asked for it.
     pub paused: bool,
     /// How fast display time is to go when it is not paused: 1 is real time.
@@ -63,7 +64,7 @@ impl Play {
             picture,
             samples: Vec::new(),
             selection: Selection::default(),
-            notice: None,
+            notice: News::default(),
             paused: false,
             speed: 1.0,
             rewinding: false,
@@ -81,7 +82,7 @@ impl Play {
         self.real_s = real_s;
         self.link.carry()?;
         if self.coupled.is_some() {
-            self.show_coupled();
+            self.show_coupled(real_s);
         } else {
             self.show_decoupled(real_s, since_s).map_err(|error| error.to_string())?;
             // What this picture asked for need not wait for the next.
@@ -109,7 +110,7 @@ impl Play {
         match self.driver.answers() {
             Ok(answers) => self.questions.learn(answers),
             // Who answers is gone; physics is not.
-            Err(error) => self.notice = Some(error.to_string()),
+            Err(error) => self.notice.tell(error.to_string()),
         }
         Ok(())
     }
@@ -120,7 +121,7 @@ impl Play {
         if let Some(key) = refusal.key().filter(|_| !stands) {
             self.history.forget(key);
         }
-        self.notice = Some(refusal.to_string());
+        self.notice.tell(refusal.to_string());
     }
 
     /// How long a frame is. Seconds.
@@ -203,7 +204,7 @@ impl Play {
     /// Keeps what was not possible for the user to read.
     pub(crate) fn note(&mut self, told: Result<(), DriverError>) {
         if let Err(error) = told {
-            self.notice = Some(error.to_string());
+            self.notice.tell(error.to_string());
         }
     }
 

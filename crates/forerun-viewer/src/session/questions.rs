@@ -125,6 +125,6 @@ impl Play {
     }
 
     fn unanswered(&mut self, error: &DriverError) {
-        self.notice = Some(error.to_string());
+        self.notice.tell(error.to_string());
     }
 }

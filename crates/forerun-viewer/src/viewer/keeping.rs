@@ -9,6 +9,9 @@ use crate::series;
 /// A window that was not drawn for longer (a hidden page, a machine asleep) goes on from where it was. Seconds.
 const GAP_MAX_S: f64 = 1.0;
 
+/// Larger pictures are not drawn twice as large. Pixels.
+const SMOOTH_PIXELS: u32 = 2560 * 1440;
+
 impl Viewer {
     /// The session's clock goes with the window's; while a film is taken, by a picture of the film at a time.
     pub(super) fn turn_clock(&mut self, elapsed_s: f64) {
@@ -21,21 +24,21 @@ impl Viewer {
         self.clock_s += goes_on_s;
     }
 
-    /// Keeps of this picture what is wanted, as far as it is drawn.
-    pub(super) fn keep_picture(&mut self, window: &RenderTarget<'_>, drawn: Drawn) {
+    /// Keeps of this picture what is wanted, panels and all. What is wanted without them is drawn anew: in the window the scene is where panels leave room.
+    pub(super) fn keep_picture(&mut self, window: &RenderTarget<'_>) {
         let scale = self.window.pixels_per_point * self.view.scale;
-        self.capture.take(drawn, scale, &self.session, || Shot::of(window));
-        let Some(film) = self.capture.film.as_ref().filter(|_| self.filmed) else { return };
-        let settings = film.settings;
-        let with_panels = settings.panels && settings.size == FilmSize::Window;
-        if with_panels != (drawn == Drawn::All) {
-            return;
+        self.capture.take(Drawn::All, scale, &self.session, || Shot::of(window));
+        let size = [window.width(), window.height()];
+        if self.capture.is_wanted(Drawn::Scene) {
+            let drawn = self.draw_apart(size);
+            let bare = if drawn.size == size { drawn } else { drawn.halved() };
+            self.capture.take(Drawn::Scene, scale, &self.session, || bare.clone());
         }
-        let shot = match settings.size.pixels() {
-            None => Shot::of(window),
-            // Twice as large, and then the mean of each four: edges come out smooth.
-            Some(size) => self.draw_apart(size.map(|side| 2 * side)),
-        };
+        let Some(film) = self.capture.film.as_ref().filter(|_| self.filmed) else { return };
+        let (settings, size) = (film.settings, film.size);
+        let with_panels = settings.panels && settings.size == FilmSize::Window;
+        // The writer makes it as large as the film.
+        let shot = if with_panels { Shot::of(window) } else { self.draw_apart(size) };
         if let Some(film) = &mut self.capture.film {
             film.take(shot);
         }
@@ -48,8 +51,10 @@ impl Viewer {
         painter.draw(target, viewport, &scenery);
     }
 
-    /// The scene in a size of its own.
-    fn draw_apart(&mut self, [width, height]: [u32; 2]) -> Shot {
+    /// The scene in a size of its own, as it is in a window without panels; twice as large, if that is not too much: the mean of each four makes edges smooth.
+    fn draw_apart(&mut self, size: [u32; 2]) -> Shot {
+        let times = if size[0] * size[1] <= SMOOTH_PIXELS { 2 } else { 1 };
+        let [width, height] = size.map(|side| times * side.max(1));
         let context = self.context.clone();
         let smooth = Interpolation::Linear;
         let clamp = Wrapping::ClampToEdge;
@@ -57,7 +62,10 @@ impl Viewer {
             Texture2D::new_empty::<[u8; 4]>(&context, width, height, smooth, smooth, None, clamp, clamp);
         let depth = DepthTexture2D::new::<f32>(&context, width, height, clamp, clamp);
         let target = RenderTarget::new(colour.as_color_target(None), depth.as_depth_target());
+        let camera = self.camera;
+        self.camera = camera.without_panels(width as f32 / height as f32);
         self.draw_scene(&target, Viewport::new_at_origo(width, height));
+        self.camera = camera;
         Shot::of(&target)
     }
 

@@ -21,12 +21,14 @@ const STIRRED: Duration = Duration::from_millis(700);
 pub(super) struct WindowPace {
     next: Instant,
     stirred: Instant,
+    /// Whether the next picture is put off, as nothing moves.
+    waits: bool,
 }
 
 #[allow(clippy::disallowed_types, reason = "see above")]
 impl WindowPace {
     pub(super) fn new() -> WindowPace {
-        WindowPace { next: Instant::now(), stirred: Instant::now() }
+        WindowPace { next: Instant::now(), stirred: Instant::now(), waits: false }
     }
 
     /// Something happened: the next picture is due now.
@@ -38,8 +40,13 @@ impl WindowPace {
     /// A picture has been drawn; whether nothing in it moves.
     pub(super) fn drawn(&mut self, still: bool) {
         let now = Instant::now();
-        let at_rest = still && now.duration_since(self.stirred) > STIRRED;
-        self.next = if at_rest { now + STILL } else { now };
+        self.waits = still && now.duration_since(self.stirred) > STIRRED;
+        self.next = if self.waits { now + STILL } else { now };
+    }
+
+    /// Whether the picture that is drawn now was put off on purpose: how long it was after the one before tells nothing.
+    pub(super) fn has_waited(&self) -> bool {
+        self.waits
     }
 
     /// Whether the next picture is due.
@@ -50,5 +57,27 @@ impl WindowPace {
     /// How the event loop waits for it.
     pub(super) fn wait(&self) -> ControlFlow {
         if self.is_due() { ControlFlow::Poll } else { ControlFlow::WaitUntil(self.next) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_wait_only_when_nothing_moves_and_nothing_has_happened_for_a_while() {
+        let mut pace = WindowPace::new();
+        pace.drawn(true);
+        assert!(pace.is_due() && !pace.has_waited(), "something has just happened");
+        std::thread::sleep(STIRRED + Duration::from_millis(1));
+        pace.drawn(false);
+        assert!(pace.is_due() && !pace.has_waited(), "something moves");
+        pace.drawn(true);
+        assert!(!pace.is_due() && pace.has_waited());
+        // A key wakes it; that picture, too, was put off.
+        pace.stir();
+        assert!(pace.is_due() && pace.has_waited());
+        pace.drawn(true);
+        assert!(pace.is_due() && !pace.has_waited());
     }
 }

@@ -18,6 +18,12 @@ use crate::dynamics::{StepReport, Unobserved, World};
 use crate::{BodyDef, BodyId, BodyState, Clock, Frame, Threads};
 pub(super) use cast::Cast;
 
+/// A display's clock may leave out the rest of a longer cycle: who waits for longer may be asleep.
+const CYCLE_MAX: Duration = Duration::from_secs(1);
+
+/// What the sum of many times may be wrong by.
+const HAIR: Duration = Duration::from_micros(10);
+
 /// Between which lengths a time step is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepLimits {
@@ -58,6 +64,8 @@ pub struct Coupled {
     limits: StepLimits,
     slow_down: Duration,
     cycle_start: Option<Duration>,
+    /// How long the last step took.
+    cost: Duration,
     time_s: f64,
     /// When the first cycle since the last pause began, and the time that was shown then.
     began: Option<(Duration, f64)>,
@@ -119,6 +127,7 @@ impl Coupled {
             limits,
             slow_down: Duration::ZERO,
             cycle_start: None,
+            cost: Duration::ZERO,
             time_s,
             began: None,
             rate: 1.0,
@@ -147,7 +156,24 @@ impl Coupled {
     ///
     /// The first call steps nothing: it shows the initial states.
     pub fn show(&mut self) -> StepReport {
-        let now = self.clock.now();
+        self.cycle(self.clock.now())
+    }
+
+    /// [`Coupled::show`] for a display with a clock of its own, which shows the picture at this time (seconds from some moment on): what steps is
+    /// the time between two pictures by that clock.
+    pub fn show_at(&mut self, now_s: f64) -> StepReport {
+        self.cycle(moment(now_s))
+    }
+
+    /// Whether the last step has ended by a display's clock (seconds): it takes as long by that one as it did by the driver's. Until then the traditional
+    /// model has nothing new to show.
+    #[must_use]
+    pub fn is_due(&self, now_s: f64) -> bool {
+        let cost = self.cost.min(CYCLE_MAX);
+        self.cycle_start.is_none_or(|start| moment(now_s) + HAIR >= start + cost)
+    }
+
+    fn cycle(&mut self, now: Duration) -> StepReport {
         let Some(before) = self.cycle_start.replace(now) else {
             self.began = Some((now, self.time_s));
             return StepReport { slices_max: 1, ..StepReport::default() };
@@ -155,6 +181,7 @@ impl Coupled {
         let cycle_s = now.saturating_sub(before).as_secs_f64();
         let step_s = cycle_s.clamp(self.limits.min_s, self.limits.max_s);
         self.rate = if cycle_s > 0.0 { step_s / cycle_s } else { 1.0 };
+        let begun = self.clock.now();
         let world = &mut self.world;
         let before = world.environment.settings.rest_frames();
         world.environment.settings.frame_seconds = step_s as f32;
@@ -176,6 +203,7 @@ impl Coupled {
         if !self.slow_down.is_zero() {
             self.clock.wait_until(self.clock.now() + self.slow_down);
         }
+        self.cost = self.clock.now().saturating_sub(begun);
         self.time_s += step_s;
         report
     }
@@ -190,6 +218,12 @@ impl Coupled {
     #[must_use]
     pub fn step_s(&self) -> f64 {
         f64::from(self.world.environment.settings.frame_seconds)
+    }
+
+    /// How long the last step took, for which who shows pictures had to wait. Seconds.
+    #[must_use]
+    pub fn cost_s(&self) -> f64 {
+        self.cost.as_secs_f64()
     }
 
     /// The bodies and their states.
@@ -207,6 +241,7 @@ impl Coupled {
     /// Time goes on from here with the next cycle, however long it is until then: the next call of [`Coupled::show`] steps nothing.
     pub fn pause(&mut self) {
         self.cycle_start = None;
+        self.cost = Duration::ZERO;
     }
 
     /// All bodies as they are to be drawn, in the order of their ids. `samples` is emptied first and keeps its memory.
@@ -289,6 +324,11 @@ impl Coupled {
     pub fn coming_body(&self) -> BodyId {
         self.cast.coming_body()
     }
+}
+
+/// A clock's time (seconds) as a moment; a number that is none is the clock's beginning.
+fn moment(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds).unwrap_or_default()
 }
 
 /// Rest is counted in frames, and these have another length now: as much of the wait for rest is over as was before, and what is at rest stays so.

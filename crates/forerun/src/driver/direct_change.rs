@@ -62,7 +62,8 @@ pub(super) fn apply(world: &mut World, cast: &mut Cast, change: &Change) -> Resu
         | Change::Release { body }
         | Change::SetMaterial { body, .. }
         | Change::SetForce { body, .. }
-        | Change::SetGravityScale { body, .. } => {
+        | Change::SetGravityScale { body, .. }
+        | Change::SetMass { body, .. } => {
             change_body(world, (*body, place_of(*body)?), change)?;
             cast.forget_still();
         }

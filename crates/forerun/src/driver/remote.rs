@@ -11,8 +11,8 @@
 //! half is the same [`Decoupled`](crate::Decoupled) as with a physics thread: pace, blending, orders and undo are one code.
 //!
 //! Promise: the display gets the snapshots that a thread would have given it, bit for bit. A message that is lost, damaged or not from here is
-//! an error, never a panic, and changes nothing. Reports that the display has not acknowledged are bounded ([`REPORTS_MAX`]); what happens
-//! meanwhile is in the next one.
+//! an error, never a panic, and changes nothing. Messages that the other side has not taken are bounded, in number ([`REPORTS_MAX`], [`LETTERS_MAX`])
+//! and in bytes ([`WAITING_BYTES_MAX`]); what happens meanwhile is in the next one.
 
 mod answer_value;
 mod courier;
@@ -32,6 +32,15 @@ pub use remote_physics::RemotePhysics;
 
 /// Reports that may be under way or unread at a time.
 const REPORTS_MAX: u64 = 4;
+
+/// Letters that may be, but for those that say that a report was taken: as many as there are reports.
+const LETTERS_MAX: u64 = 64;
+
+/// While reports of so many bytes are under way or unread, no other is made.
+const WAITING_BYTES_MAX: usize = 64 << 20;
+
+/// Nobody reads a longer message. Bytes.
+const MESSAGE_BYTES_MAX: usize = 512 << 20;
 
 /// How a physics works that is elsewhere than its display.
 #[derive(Clone, Debug)]

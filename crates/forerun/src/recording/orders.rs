@@ -67,6 +67,7 @@ pub(crate) enum ChangeValue {
     SetGravityScale(u32, f32),
     SetKind(u32, KindValue),
     SetGravity(Three),
+    SetMass(u32, f32),
 }
 
 /// As [`Order`].
@@ -149,6 +150,7 @@ impl ToFile<'_> {
             Change::SetGravityScale { body, scale } => ChangeValue::SetGravityScale(body.0, *scale),
             Change::SetKind { body, kind } => ChangeValue::SetKind(body.0, kind_value(*kind)),
             Change::SetGravity { gravity } => ChangeValue::SetGravity(gravity.to_array()),
+            Change::SetMass { body, mass } => ChangeValue::SetMass(body.0, *mass),
         }
     }
 }
@@ -241,6 +243,7 @@ pub(crate) fn change_of(value: ChangeValue, stored: &[Shape]) -> Result<Change, 
         ChangeValue::SetGravityScale(body, scale) => Change::SetGravityScale { body: BodyId(body), scale },
         ChangeValue::SetKind(body, kind) => Change::SetKind { body: BodyId(body), kind: kind_of(kind) },
         ChangeValue::SetGravity(gravity) => Change::SetGravity { gravity: three(gravity) },
+        ChangeValue::SetMass(body, mass) => Change::SetMass { body: BodyId(body), mass },
     })
 }
 

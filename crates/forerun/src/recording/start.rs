@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forerun_dynamics::{Body, BodyState, Environment, ShockPropagation, StepSettings};
+use forerun_dynamics::{Body, BodyDef, BodyState, Environment, ShockPropagation, StepSettings};
 use forerun_geometry::{Shape, Vec3};
 use forerun_timeline::parts::{BodyParts, NameParts, TimelineParts};
 use forerun_timeline::{Frame, TimelineSettings};
@@ -72,6 +72,8 @@ enum PresenceValue {
     Moved(Words),
     /// Changed by commands.
     Changed(Box<BodyValue>),
+    /// Of another mass than it was made with (1/kg), and perhaps changed in other ways.
+    Weighed(f32, Box<BodyValue>),
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -182,15 +184,17 @@ impl ToFile<'_> {
                     false => PresenceValue::Moved(now.state.bits()),
                 }
             }
-            (Some(now), _) => PresenceValue::Changed(Box::new(BodyValue {
-                kind: kind_value(now.kind),
-                material: material_value(&now.material),
-                gravity_scale: now.gravity_scale,
-                force: now.force.to_array(),
-                torque: now.torque.to_array(),
-                spring: now.spring.as_ref().map(spring_value),
-                state: now.state.bits(),
-            })),
+            (Some(now), _) => {
+                let of_kind = def
+                    .as_ref()
+                    .and_then(|def| Body::new(&BodyDef { kind: now.kind, ..BodyDef::clone(def) }).ok());
+                let as_made =
+                    of_kind.is_none_or(|(made, _)| made.inverse_mass.to_bits() == now.inverse_mass.to_bits());
+                match as_made {
+                    true => PresenceValue::Changed(Box::new(body_value(now))),
+                    false => PresenceValue::Weighed(now.inverse_mass, Box::new(body_value(now))),
+                }
+            }
         };
         NameValue { def: def.as_ref().map(|def| self.def(def)), body: presence }
     }
@@ -208,23 +212,47 @@ pub(crate) fn name_of(value: NameValue, stored: &[Shape]) -> Result<NameParts, S
         PresenceValue::Absent => None,
         PresenceValue::AsMade => made(None)?,
         PresenceValue::Moved(words) => made(Some(words))?,
-        PresenceValue::Changed(now) => Some(BodyParts {
-            kind: kind_of(now.kind),
-            material: material_of(now.material),
-            gravity_scale: now.gravity_scale,
-            force: Vec3::from_array(now.force),
-            torque: Vec3::from_array(now.torque),
-            spring: now.spring.map(spring_of),
-            state: state_of(now.state),
-        }),
+        PresenceValue::Changed(now) => {
+            let def = def.as_ref().ok_or("a body that was never made")?;
+            let of_kind = BodyDef { kind: kind_of(now.kind), ..BodyDef::clone(def) };
+            let (made, _) = Body::new(&of_kind).map_err(|error| error.to_string())?;
+            Some(body_of(*now, made.inverse_mass))
+        }
+        PresenceValue::Weighed(inverse_mass, now) => Some(body_of(*now, inverse_mass)),
     };
     Ok(NameParts { def, body })
+}
+
+fn body_value(now: &BodyParts) -> BodyValue {
+    BodyValue {
+        kind: kind_value(now.kind),
+        material: material_value(&now.material),
+        gravity_scale: now.gravity_scale,
+        force: now.force.to_array(),
+        torque: now.torque.to_array(),
+        spring: now.spring.as_ref().map(spring_value),
+        state: now.state.bits(),
+    }
+}
+
+fn body_of(value: BodyValue, inverse_mass: f32) -> BodyParts {
+    BodyParts {
+        kind: kind_of(value.kind),
+        inverse_mass,
+        material: material_of(value.material),
+        gravity_scale: value.gravity_scale,
+        force: Vec3::from_array(value.force),
+        torque: Vec3::from_array(value.torque),
+        spring: value.spring.map(spring_of),
+        state: state_of(value.state),
+    }
 }
 
 /// A body that no command changed.
 fn as_made(body: &Body, state: BodyState) -> BodyParts {
     BodyParts {
         kind: body.kind,
+        inverse_mass: body.inverse_mass,
         material: body.material,
         gravity_scale: body.gravity_scale,
         force: body.force,
@@ -239,7 +267,8 @@ fn same_bits(a: &BodyParts, b: &BodyParts) -> bool {
     let numbers = |body: &BodyParts| {
         let ([x, y, z], [u, v, w]) = (body.force.to_array(), body.torque.to_array());
         let [friction, static_friction, restitution] = material_value(&body.material);
-        [x, y, z, u, v, w, friction, static_friction, restitution, body.gravity_scale].map(f32::to_bits)
+        [x, y, z, u, v, w, friction, static_friction, restitution, body.gravity_scale, body.inverse_mass]
+            .map(f32::to_bits)
     };
     a.kind == b.kind && a.spring == b.spring && numbers(a) == numbers(b)
 }

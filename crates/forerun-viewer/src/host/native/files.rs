@@ -1,5 +1,7 @@
 //! Files of the desktop: settings, pictures, the dialog that chooses a scene, and the watch over the one that is open.
 
+use std::fs::File;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
 use std::sync::{Arc, Weak};
@@ -49,23 +51,46 @@ fn config_folder() -> Option<PathBuf> {
 /// When the folder cannot be written to.
 pub(super) fn save_file(name: &str, content: &[u8]) -> Result<String, String> {
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
-    let path = free_path(stem, ending);
-    let kept = std::fs::write(&path, content);
-    kept.map(|()| path.display().to_string())
+    let (path, mut file) = new_file(stem, ending)?;
+    file.write_all(content)
+        .map(|()| path.display().to_string())
         .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
-/// A path in the folder that the viewer was started in that names nothing yet. The ending is without its point; empty for a folder.
-pub(super) fn free_path(stem: &str, ending: &str) -> PathBuf {
+/// Makes a file in the folder that the viewer was started in, under a name that is free. The ending is without its point.
+///
+/// # Errors
+/// When the folder cannot be written to.
+pub(super) fn new_file(stem: &str, ending: &str) -> Result<(PathBuf, File), String> {
+    make_new(stem, &format!(".{ending}"), |path| File::create_new(path))
+}
+
+/// Makes a folder in the one that the viewer was started in, under a name that is free.
+///
+/// # Errors
+/// When the folder cannot be written to.
+pub(super) fn new_folder(stem: &str) -> Result<PathBuf, String> {
+    make_new(stem, "", |path| std::fs::create_dir(path)).map(|(path, ())| path)
+}
+
+/// Makes what does not exist yet: to look first for a name that is free would let two take the same.
+fn make_new<T>(
+    stem: &str,
+    ending: &str,
+    make: impl Fn(&Path) -> io::Result<T>,
+) -> Result<(PathBuf, T), String> {
     let folder = std::env::current_dir().unwrap_or_default();
-    let named = |stem: &str| match ending {
-        "" => folder.join(stem),
-        _ => folder.join(format!("{stem}.{ending}")),
-    };
     // There are more numbers than files.
-    let mut numbered = (2_u32..).map(|number| named(&format!("{stem}-{number}")));
-    let first = named(stem);
-    if first.exists() { numbered.find(|path| !path.exists()).unwrap_or(first) } else { first }
+    let mut number = 1_u64;
+    loop {
+        let name = if number == 1 { format!("{stem}{ending}") } else { format!("{stem}-{number}{ending}") };
+        let path = folder.join(name);
+        match make(&path) {
+            Ok(made) => return Ok((path, made)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
+            Err(error) => return Err(format!("cannot make {}: {error}", path.display())),
+        }
+    }
 }
 
 /// A dialog that is open, in a thread of its own.
@@ -161,6 +186,21 @@ mod tests {
         assert!(second.ends_with("-2.txt"), "{second}");
         for file in [first, second] {
             std::fs::remove_file(file).expect("it was written just now");
+        }
+    }
+
+    #[test]
+    fn many_who_save_at_once_get_a_name_each() {
+        let stem = format!("forerun-race-{}", std::process::id());
+        let save = |number: usize| save_file(&format!("{stem}.txt"), &[number as u8]);
+        let saved: Vec<(usize, String)> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..16).map(|number| scope.spawn(move || (number, save(number)))).collect();
+            let saved = threads.into_iter().map(|thread| thread.join().expect("it does not panic"));
+            saved.map(|(number, path)| (number, path.expect("it can be written"))).collect()
+        });
+        for (number, path) in saved {
+            assert_eq!(std::fs::read(&path).expect("it is there"), [number as u8]);
+            std::fs::remove_file(path).expect("it was written just now");
         }
     }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
 
-use super::files::{free_path, save_file};
+use super::files::{new_file, new_folder, save_file};
 use crate::capture::{FilmFormat, FilmSettings, Shot};
 
 /// Pictures of a film that may wait to be written.
@@ -148,31 +148,28 @@ enum Reel {
 impl Reel {
     fn new(settings: &FilmSettings, stem: &str, size: [u32; 2]) -> Result<Reel, String> {
         match settings.format {
-            FilmFormat::Png => {
-                let path = free_path(stem, "");
-                std::fs::create_dir_all(&path)
-                    .map_err(|error| format!("cannot make {}: {error}", path.display()))?;
-                Ok(Reel::Folder(path))
-            }
-            FilmFormat::Gif => Reel::gif(free_path(stem, "gif"), settings.fps, size),
-            FilmFormat::Mp4 => Reel::ffmpeg(free_path(stem, "mp4"), settings.fps, size),
+            FilmFormat::Png => new_folder(stem).map(Reel::Folder),
+            FilmFormat::Gif => Reel::gif(stem, settings.fps, size),
+            FilmFormat::Mp4 => Reel::ffmpeg(stem, settings.fps, size),
         }
     }
 
-    fn gif(path: PathBuf, fps: u32, size: [u32; 2]) -> Result<Reel, String> {
+    fn gif(stem: &str, fps: u32, size: [u32; 2]) -> Result<Reel, String> {
         let sides = size.map(u16::try_from);
         let [Ok(width), Ok(height)] = sides else {
             return Err("a GIF has at most 65535 pixels a side".to_owned());
         };
+        let (path, file) = new_file(stem, "gif")?;
         let cannot = |error: String| format!("cannot write {}: {error}", path.display());
-        let file = std::fs::File::create(&path).map_err(|error| cannot(error.to_string()))?;
         let mut encoder = gif::Encoder::new(BufWriter::new(file), width, height, &[])
             .map_err(|error| cannot(error.to_string()))?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| cannot(error.to_string()))?;
         Ok(Reel::Gif { path, encoder: Box::new(encoder), fps })
     }
 
-    fn ffmpeg(path: PathBuf, fps: u32, size: [u32; 2]) -> Result<Reel, String> {
+    fn ffmpeg(stem: &str, fps: u32, size: [u32; 2]) -> Result<Reel, String> {
+        // Its name is taken now; the program writes over it.
+        let (path, _) = new_file(stem, "mp4")?;
         let mut program = Command::new("ffmpeg")
             .args(["-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba"])
             .args(["-s", &format!("{}x{}", size[0], size[1]), "-r", &fps.to_string(), "-i", "-"])
@@ -183,6 +180,8 @@ impl Reel {
             .stderr(Stdio::null())
             .spawn()
             .map_err(|error| {
+                // Nothing comes into it any more.
+                let _ = std::fs::remove_file(&path);
                 format!("ffmpeg does not start ({error}): install it, or choose GIF or PNG files")
             })?;
         let input = program.stdin.take();

@@ -2,9 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use egui_plot::{Bar, BarChart, Corner, Legend, Line, Plot, PlotPoint, PlotPoints, PlotUi};
+use egui_plot::{Bar, BarChart, Line, Plot, PlotPoint, PlotPoints, PlotUi};
 use forerun::Stage;
-use three_d::egui::{Color32, Ui, Vec2};
+use three_d::egui::{Color32, FontId, Sense, Ui, Vec2, vec2};
 
 use crate::panels::palette::Palette;
 use crate::series::{PictureRow, Series};
@@ -99,6 +99,36 @@ const STAGES: [Color32; 7] = [
     Color32::from_rgb(0x8a, 0x90, 0x9a),
 ];
 
+/// Letters of legends. Points.
+const SMALL: f32 = 10.5;
+
+/// What the colours of a plot mean, above it: in it they would hide curves.
+pub(super) fn legend(ui: &mut Ui, kind: Kind, palette: &Palette) {
+    let named: Vec<(&str, Color32)> = match kind {
+        Kind::Stages => stage_names().zip(STAGES).collect(),
+        Kind::Edits => vec![("full", palette.past), ("recomputed", palette.stale)],
+        _ => curves(kind, palette).into_iter().map(|(name, colour, _)| (name, colour)).collect(),
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 0.0);
+        for (name, colour) in named {
+            // In one piece, so that no line ends between a colour and its name.
+            let text = ui.painter().layout_no_wrap(
+                name.to_owned(),
+                FontId::proportional(SMALL),
+                Color32::PLACEHOLDER,
+            );
+            let (rect, _) = ui.allocate_exact_size(text.size() + vec2(16.0, 1.0), Sense::hover());
+            ui.painter().circle_filled(rect.left_center() + vec2(5.0, 0.0), 3.5, colour);
+            ui.painter().galley(rect.min + vec2(11.0, 0.0), text, ui.visuals().text_color());
+        }
+    });
+}
+
+fn stage_names() -> impl Iterator<Item = &'static str> {
+    Stage::ALL.iter().map(|stage| stage.name()).chain(["other"])
+}
+
 /// Draws one plot over a time of the window's clock (seconds), in a size (points) and in colours.
 pub(super) fn show(
     ui: &mut Ui,
@@ -112,7 +142,6 @@ pub(super) fn show(
     let plot = Plot::new(kind.name())
         .width(size.x)
         .height(size.y)
-        .legend(Legend::default().position(Corner::LeftTop).background_alpha(0.6))
         .allow_drag(false)
         .allow_scroll(false)
         .allow_zoom(false)
@@ -133,14 +162,8 @@ pub(super) fn show(
 /// A name, a colour, and what of a picture is drawn.
 type Curve = (&'static str, Color32, fn(&PictureRow) -> f64);
 
-fn pictures(
-    plot: &mut PlotUi<'_>,
-    kind: Kind,
-    series: &Series,
-    time_s: &RangeInclusive<f64>,
-    palette: &Palette,
-) {
-    let curves: Vec<Curve> = match kind {
+fn curves(kind: Kind, palette: &Palette) -> Vec<Curve> {
+    match kind {
         Kind::Queue => vec![
             ("queue_max", palette.most, |picture| f64::from(picture.row.queue_max)),
             ("queue_min", palette.fewest, |picture| f64::from(picture.row.queue_min)),
@@ -155,9 +178,21 @@ fn pictures(
             ("slices_max", palette.fewest, |picture| f64::from(picture.row.slices_max)),
             ("areas_active", palette.most, |picture| f64::from(picture.row.areas_active)),
         ],
-    };
-    for (name, colour, value) in curves {
+    }
+}
+
+fn pictures(
+    plot: &mut PlotUi<'_>,
+    kind: Kind,
+    series: &Series,
+    time_s: &RangeInclusive<f64>,
+    palette: &Palette,
+) {
+    for (name, colour, value) in curves(kind, palette) {
+        // A picture that was put off on purpose, or the first, has no interval.
+        let counts = |picture: &&PictureRow| kind != Kind::Interval || picture.row.interval_ms > 0.0;
         let shown = series.pictures.iter().filter(|picture| time_s.contains(&picture.row.time_real_s));
+        let shown = shown.filter(counts);
         let points: Vec<[f64; 2]> = shown.map(|picture| [picture.row.time_real_s, value(picture)]).collect();
         plot.line(Line::new(name, PlotPoints::from(points)).color(colour).width(1.6));
     }
@@ -178,9 +213,8 @@ fn stages(plot: &mut PlotUi<'_>, series: &Series, time_s: &RangeInclusive<f64>) 
         *count += 1;
     }
     let width = span_s / slots as f64;
-    let names = Stage::ALL.iter().map(|stage| stage.name()).chain(["other"]);
     let mut charts: Vec<BarChart> = Vec::new();
-    for (i, name) in names.enumerate() {
+    for (i, name) in stage_names().enumerate() {
         let bar = |(slot, (sum, count)): (usize, &([f64; 7], u32))| {
             let x = time_s.start() + (slot as f64 + 0.5) * width;
             (*count > 0).then(|| Bar::new(x, sum[i] / f64::from(*count)).width(width))

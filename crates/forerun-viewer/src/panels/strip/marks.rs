@@ -54,6 +54,7 @@ fn told(change: &Change) -> String {
         Change::SetMaterial { .. } => "surface of",
         Change::SetForce { .. } => "force on",
         Change::SetGravityScale { .. } => "gravity on",
+        Change::SetMass { .. } => "mass of",
         Change::SetKind { .. } => "kind of",
         Change::SetGravity { gravity } => {
             return format!("gravity {:.2}, {:.2}, {:.2} m/s²", gravity.x, gravity.y, gravity.z);

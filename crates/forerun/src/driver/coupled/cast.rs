@@ -139,8 +139,9 @@ impl Cast {
         let bodies = world.bodies().iter().zip(self.states(world));
         for ((name, def), (body, state)) in self.names.iter().zip(&self.defs).zip(bodies) {
             let def = def.clone().unwrap_or_else(|| Arc::new(def_of(body, &state)));
-            let Body { kind, material, gravity_scale, force, torque, spring, .. } = *body;
-            let body = BodyParts { kind, material, gravity_scale, force, torque, spring, state };
+            let Body { kind, inverse_mass, material, gravity_scale, force, torque, spring, .. } = *body;
+            let body =
+                BodyParts { kind, inverse_mass, material, gravity_scale, force, torque, spring, state };
             if let Some(place) = names.get_mut(name.0 as usize) {
                 *place = NameParts { def: Some(def), body: Some(body) };
             }

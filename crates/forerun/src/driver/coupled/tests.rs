@@ -1,5 +1,7 @@
 //! The traditional model by a hand-turned clock, and its way from a timeline and back.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use super::*;
 use crate::{BodyDef, Cuboid, Environment, Shape, Sphere, Vec3};
 
@@ -47,6 +49,34 @@ fn a_step_is_as_long_as_the_cycle_before() {
         driver.show();
         assert!((1000.0 * (driver.time_s() - before) - step_ms).abs() < 1e-9, "cycle of {cycle_ms} ms");
     }
+}
+
+#[test]
+fn a_step_takes_as_long_by_the_clock_of_a_display_as_by_the_machines() {
+    // Every look at this clock finds it 1 ms later.
+    static LOOKS: AtomicU32 = AtomicU32::new(0);
+    let clock = Clock::host(|| f64::from(LOOKS.fetch_add(1, Ordering::Relaxed)) * 1e-3);
+    let mut driver = coupled(&clock).with_slow_down(Duration::from_millis(190));
+    assert!(driver.is_due(7.0));
+    driver.show_at(7.0);
+    assert!(driver.is_due(7.0), "the first shows what there is");
+    // A film of 25 pictures a second: one step in five pictures, each of the longest that is allowed.
+    let mut stepped = 0;
+    for picture in 1_u8..=50 {
+        let now_s = 7.0 + f64::from(picture) * 0.04;
+        if driver.is_due(now_s) {
+            let before = driver.time_s();
+            driver.show_at(now_s);
+            stepped += 1;
+            let step_s = driver.time_s() - before;
+            assert!((step_s - if stepped == 1 { 0.04 } else { 0.042 }).abs() < 1e-9, "{step_s} s");
+            assert!((0.19..0.2).contains(&driver.cost_s()), "{} s", driver.cost_s());
+        }
+    }
+    assert_eq!(stepped, 10);
+    driver.pause();
+    assert!(driver.is_due(9.001), "who paused waits for no step");
+    driver.show_at(f64::NAN);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::driver::driver_error::DriverError;
 use crate::driver::fork::Fork;
 use crate::driver::hearing::Message;
 use crate::driver::refusal::Refusal;
-use crate::{BodyDef, BodyId};
+use crate::{BodyDef, BodyId, Frame};
 
 impl Decoupled {
     /// A change by the local user, from the first frame after the displayed one on: not a bit of what is on the screen changes.
@@ -18,7 +18,15 @@ impl Decoupled {
     /// [`DriverError::QueueFull`] when too many orders wait; [`DriverError::Panicked`]. Whether the change is possible is found
     /// out by the physics thread: see [`Decoupled::refusals`].
     pub fn change(&mut self, change: Change) -> Result<CommandKey, DriverError> {
-        let key = self.names.key_at(self.displayed_frame().next());
+        self.change_at(self.displayed_frame().next(), change)
+    }
+
+    /// A change by the local user at a frame of its own, past or to come, after all that this user changes there already.
+    ///
+    /// # Errors
+    /// As [`Decoupled::change`].
+    pub fn change_at(&mut self, frame: Frame, change: Change) -> Result<CommandKey, DriverError> {
+        let key = self.names.key_at(frame);
         self.submit(Command { key, change })?;
         Ok(key)
     }

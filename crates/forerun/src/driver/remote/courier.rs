@@ -6,11 +6,11 @@ use std::sync::{Arc, PoisonError};
 use forerun_timeline::parts::FRAME_MAX;
 use forerun_timeline::{Frame, TimelineSettings};
 
-use super::RemoteError;
 use super::answer_value::{answered_of, preview_value};
 use super::delta_value::{delta_of, stats_of};
 use super::refusal_value::refusal_of;
 use super::wire::{Letter, Reader, Report, Start, Writer};
+use super::{LETTERS_MAX, RemoteError};
 use crate::driver::decoupled::{COMMANDS_MAX, Decoupled};
 use crate::driver::fork::Names;
 use crate::driver::frame_notes::FrameNote;
@@ -36,7 +36,9 @@ pub struct Courier {
     writer: Writer,
     reader: Reader,
     /// Letters written.
-    letters: u64,
+    pub(super) letters: u64,
+    /// Letters that the physics has taken, as far as it told.
+    pub(super) heard: u64,
     /// Reports taken.
     reports: u64,
     /// What the last letter said: pictures, and reports taken.
@@ -86,6 +88,7 @@ impl Decoupled {
             writer: Writer::default(),
             reader,
             letters: 0,
+            heard: 0,
             reports: 1,
             said: (0, 0),
         };
@@ -95,9 +98,14 @@ impl Decoupled {
 
 impl Courier {
     /// The messages that the physics has to get now, in this order: at most one after each picture. To be asked for after every
-    /// [`Decoupled::show`], and while nothing is shown as often as messages come.
+    /// [`Decoupled::show`], and while nothing is shown as often as messages come. None while the physics has not taken many of those before: then
+    /// orders wait in the driver's queue, which says when it is full.
     #[must_use]
     pub fn outgoing(&mut self) -> Vec<Vec<u8>> {
+        // A physics that may not report any more has to hear that its reports were taken, whatever it has not read.
+        if self.letters - self.heard >= LETTERS_MAX && self.said.1 == self.reports {
+            return Vec::new();
+        }
         // What is shown is read first: see `Physics::catch_up`.
         let (shown, pictures) = self.shared.shown();
         let (names, _) = self.names.next();
@@ -137,6 +145,10 @@ impl Courier {
         if report.number != due || report.start.is_some() {
             return Err(RemoteError::OutOfTurn { due, number: report.number });
         }
+        if report.heard > self.letters || report.heard < self.heard {
+            let (heard, letters) = (report.heard, self.letters);
+            return Err(RemoteError::Impossible(format!("letter {heard} of {letters} was taken")));
+        }
         let before = self.shared.published.load_full();
         let snapshot = match report.delta {
             Some(delta) => delta_of(delta, &opened.shapes)
@@ -145,7 +157,7 @@ impl Courier {
             None => Arc::clone(&before.snapshot),
         };
         self.reader.keep(opened.shapes);
-        self.reports = report.number;
+        (self.reports, self.heard) = (report.number, report.heard);
         for (frame, slices_max, areas_active) in report.notes {
             self.shared.notes.write(Frame(frame), FrameNote { slices_max, areas_active });
         }

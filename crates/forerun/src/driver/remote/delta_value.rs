@@ -57,9 +57,9 @@ struct HistoryValue {
     entries: Vec<(u64, Option<TraitsValue>)>,
 }
 
-/// Kind, material, factor on gravity, force, torque, spring.
+/// Kind, material, factor on gravity, force, torque, spring, inverse mass.
 #[derive(Debug, Serialize, Deserialize)]
-struct TraitsValue(KindValue, Three, f32, Three, Three, Option<SpringValue>);
+struct TraitsValue(KindValue, Three, f32, Three, Three, Option<SpringValue>, f32);
 
 /// The value of a delta. What has to be sent before goes to `new`.
 pub(super) fn delta_value(
@@ -167,12 +167,15 @@ fn traits_value(traits: &BodyTraits) -> TraitsValue {
         traits.force.to_array(),
         traits.torque.to_array(),
         traits.spring.as_ref().map(spring_value),
+        traits.inverse_mass,
     )
 }
 
-fn traits_of(TraitsValue(kind, material, gravity_scale, force, torque, spring): TraitsValue) -> BodyTraits {
+fn traits_of(value: TraitsValue) -> BodyTraits {
+    let TraitsValue(kind, material, gravity_scale, force, torque, spring, inverse_mass) = value;
     BodyTraits {
         kind: kind_of(kind),
+        inverse_mass,
         material: material_of(material),
         gravity_scale,
         force: Vec3::from_array(force),

@@ -1,6 +1,6 @@
 //! Remote physics: the physics' end of the way to a display that is elsewhere.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
@@ -11,7 +11,7 @@ use super::answer_value::{answered_value, preview_of};
 use super::delta_value::{delta_value, stats_value};
 use super::refusal_value::refusal_value;
 use super::wire::{Letter, Reader, Report, StageTimesValue, Start, Writer};
-use super::{REPORTS_MAX, RemoteError, RemoteSettings};
+use super::{LETTERS_MAX, REPORTS_MAX, RemoteError, RemoteSettings, WAITING_BYTES_MAX};
 use crate::DriverError;
 use crate::driver::decoupled::COMMANDS_MAX;
 use crate::driver::fork::Names;
@@ -70,6 +70,10 @@ pub struct RemotePhysics {
     reports: u64,
     /// Reports that the display has taken.
     acknowledged: u64,
+    /// How long those are that it has not, in bytes.
+    pub(super) waiting: VecDeque<usize>,
+    /// How many letters were taken, as the last report tells.
+    told_letters: u64,
     /// What the display has, or will have when it has taken all reports.
     sent: Option<Arc<Snapshot>>,
     /// Frames whose notes it does not have.
@@ -135,6 +139,8 @@ impl RemotePhysics {
             letters: 0,
             reports: 0,
             acknowledged: 0,
+            waiting: VecDeque::new(),
+            told_letters: 0,
             sent: None,
             noted: BTreeSet::new(),
             timed: 0,
@@ -177,6 +183,8 @@ impl RemotePhysics {
         let preview = preview.map_err(RemoteError::Impossible)?;
         self.reader.keep(opened.shapes);
         (self.letters, self.acknowledged) = (letter.number, letter.acknowledged);
+        let taken = self.waiting.len().saturating_sub((self.reports - self.acknowledged) as usize);
+        self.waiting.drain(..taken);
         if let Some(last) = letter.names.checked_sub(1) {
             self.names.learn_body(crate::BodyId(last));
         }
@@ -228,7 +236,8 @@ impl RemotePhysics {
     /// enough of those before: then it is in a later one.
     #[must_use]
     pub fn publish(&mut self) -> Option<Vec<u8>> {
-        if self.reports - self.acknowledged >= REPORTS_MAX {
+        let waiting_bytes: usize = self.waiting.iter().sum();
+        if self.reports - self.acknowledged >= REPORTS_MAX || waiting_bytes >= WAITING_BYTES_MAX {
             return None;
         }
         let shared = Arc::clone(&self.physics.shared);
@@ -238,8 +247,10 @@ impl RemotePhysics {
         let refusals: Vec<Refusal> = self.refusals.try_iter().collect();
         let sent = self.sent.clone();
         let is_new = sent.as_ref().is_none_or(|sent| !Arc::ptr_eq(sent, &published.snapshot));
+        // Before the display has to wait for it, it hears that its letters were taken.
+        let heard = self.letters - self.told_letters < LETTERS_MAX / 2;
         let told = refusals.is_empty() && self.answers.is_empty();
-        if !is_new && told && (!done || self.told_done == Some(pictures)) {
+        if !is_new && told && heard && (!done || self.told_done == Some(pictures)) {
             return None;
         }
         self.told_done = done.then_some(pictures);
@@ -256,8 +267,10 @@ impl RemotePhysics {
         let answers = std::mem::take(&mut self.answers);
         let start = (number == 1).then(|| self.start());
         self.sent = Some(Arc::clone(&published.snapshot));
-        Some(self.writer.write(|stored, new| Report {
+        self.told_letters = self.letters;
+        let report = self.writer.write(|stored, new| Report {
             number,
+            heard: self.letters,
             start,
             delta: delta.map(|delta| delta_value(&delta, stored, new)),
             stats: stats_value(&published.stats),
@@ -267,7 +280,9 @@ impl RemotePhysics {
             refusals: refusals.iter().filter_map(refusal_value).collect(),
             answers: answers.iter().map(answered_value).collect(),
             stage_times: times.iter().map(times_value).collect(),
-        }))
+        });
+        self.waiting.push_back(report.len());
+        Some(report)
     }
 
     fn start(&self) -> Start {

@@ -128,6 +128,53 @@ fn physics_runs_ahead_of_what_is_shown_and_says_when_it_is_done() {
 }
 
 #[test]
+fn a_physics_that_does_not_listen_gets_it_all_in_a_bounded_number_of_letters() {
+    let mut pair = Pair::of(timeline());
+    let mut letters = Vec::new();
+    for picture in 0..500_u32 {
+        pair.display.show(f64::from(picture) * 0.001).expect("physics lives");
+        if picture % 50 == 0 {
+            let change = Change::Push { body: BodyId(1), impulse: Vec3::X, at_point: None };
+            pair.display.change(change).expect("the queue has room");
+        }
+        letters.extend(pair.courier.outgoing());
+    }
+    // One of them said that the first report was taken.
+    assert_eq!(letters.len() as u64, LETTERS_MAX);
+    for letter in &letters {
+        pair.physics.receive(letter).expect("it was written here");
+    }
+    pair.settle();
+    pair.settle();
+    let commands = |snapshot: &forerun_timeline::Snapshot| snapshot.commands().count();
+    assert_eq!(commands(&pair.physics.timeline().snapshot()), 10);
+    assert_eq!(commands(&pair.display.last_picture().snapshot), 10);
+    // Where nothing is new but that, the display hears that its letters were taken: neither side ever waits for the other.
+    for picture in 500..2000_u32 {
+        pair.display.show(f64::from(picture) * 1e-9).expect("physics lives");
+        pair.exchange(1);
+        assert!(pair.courier.letters - pair.courier.heard < LETTERS_MAX, "{picture}");
+    }
+}
+
+#[test]
+fn long_reports_wait_for_each_other_and_too_long_a_message_is_not_read() {
+    let mut pair = Pair::of(timeline());
+    pair.display.show(0.0).expect("physics lives");
+    for _ in 0..2 {
+        let _: Progress = pair.physics.turn();
+        assert!(pair.physics.publish().is_some());
+    }
+    *pair.physics.waiting.back_mut().expect("nobody took it") = WAITING_BYTES_MAX;
+    let _: Progress = pair.physics.turn();
+    assert!(pair.physics.publish().is_none());
+    let long = vec![0; MESSAGE_BYTES_MAX + 1];
+    assert!(
+        matches!(pair.physics.receive(&long), Err(RemoteError::Damaged(what)) if what.contains("longer"))
+    );
+}
+
+#[test]
 fn a_display_that_does_not_listen_gets_it_all_in_a_few_reports() {
     let mut pair = Pair::of(timeline());
     let mut reports = Vec::new();

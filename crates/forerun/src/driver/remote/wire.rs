@@ -4,15 +4,15 @@ use forerun_geometry::Shape;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::RemoteError;
 use super::answer_value::{AnsweredValue, AskedInspectionValue, AskedPreviewValue};
 use super::delta_value::{DeltaValue, StatsValue};
 use super::refusal_value::RefusalValue;
+use super::{MESSAGE_BYTES_MAX, RemoteError};
 use crate::recording::large_shapes::{LargeShape, StoredShapes, large_shape_with};
 use crate::recording::orders::OrderValue;
 
 /// Begins every message: who speaks another version is not understood by chance.
-const VERSION: [u8; 4] = *b"fre1";
+const VERSION: [u8; 4] = *b"fre2";
 
 /// From the display to the physics.
 #[derive(Debug, Serialize, Deserialize)]
@@ -38,6 +38,8 @@ pub(super) struct Letter {
 pub(super) struct Report {
     /// 1, 2, 3, ...
     pub(super) number: u64,
+    /// The last letter that was taken.
+    pub(super) heard: u64,
     /// In the first.
     pub(super) start: Option<Start>,
     /// From the last snapshot that was sent to the newest, unless that is the same.
@@ -122,6 +124,9 @@ fn baked(shape: &Shape) -> Option<Vec<u8>> {
 impl Reader {
     pub(super) fn open<T: DeserializeOwned>(&self, bytes: &[u8]) -> Result<Opened<T>, RemoteError> {
         let damaged = |what: &str| RemoteError::Damaged(what.to_owned());
+        if bytes.len() > MESSAGE_BYTES_MAX {
+            return Err(damaged("it is longer than any message may be"));
+        }
         let (content, sum) = bytes.split_last_chunk::<4>().ok_or_else(|| damaged("it is too short"))?;
         if crc32fast::hash(content) != u32::from_le_bytes(*sum) {
             return Err(damaged("its checksum is wrong"));
