@@ -157,15 +157,19 @@ async function touch(browser, server) {
   const turned = await places();
   const by = (id) => Math.hypot(before.get(id)[0] - turned.get(id)[0], before.get(id)[1] - turned.get(id)[1]);
   check([...before.keys()].some((id) => turned.has(id) && by(id) > 2), "phone: one finger goes round");
-  const width = (places) => Math.max(...[...places.values()].map(([x]) => x)) - Math.min(...[...places.values()].map(([x]) => x));
+  // Of those that are still in sight.
+  const width = (places, others) => {
+    const across = [...places].filter(([id]) => others.has(id)).map(([, [x]]) => x);
+    return Math.max(...across) - Math.min(...across);
+  };
   await fingers("touchStart", [150, 150]);
   await fingers("touchStart", [150, 150], [240, 150]);
   for (let i = 1; i <= 4; i++) {
-    await fingers("touchMove", [150 - 10 * i, 150], [240 + 10 * i, 150]);
+    await fingers("touchMove", [150 - 5 * i, 150], [240 + 5 * i, 150]);
   }
   await fingers("touchEnd");
   const near = await places();
-  check(width(near) > 1.3 * width(turned), "phone: two fingers that part come nearer");
+  check(width(near, turned) > 1.25 * width(turned, near), "phone: two fingers that part come nearer");
   await fingers("touchStart", [150, 150]);
   await fingers("touchStart", [150, 150], [240, 150]);
   for (let i = 1; i <= 4; i++) {
