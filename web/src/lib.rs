@@ -14,21 +14,21 @@ extern "C" {
     fn now_ms() -> f64;
 }
 
-/// The message of the last panic.
-static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);
+/// The message of the first panic: those after it only come of it.
+static PANIC: Mutex<Option<String>> = Mutex::new(None);
 
-/// Keeps the messages of panics, which end as a bare trap here.
+/// Keeps the message of a panic, which ends as a bare trap here.
 #[wasm_bindgen(start)]
 fn start() {
     std::panic::set_hook(Box::new(|panic| {
-        *LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some(panic.to_string());
+        PANIC.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| panic.to_string());
     }));
 }
 
-/// The message of the last panic, if there was one: a bug.
+/// The message of the first panic, if there was one: a bug.
 #[wasm_bindgen]
-pub fn last_panic() -> Option<String> {
-    LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).clone()
+pub fn panic_message() -> Option<String> {
+    PANIC.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 /// The host's clock. Seconds.

@@ -1,5 +1,7 @@
 //! Worker: the physics' role. JavaScript carries the messages and gives it time.
 
+use std::path::Path;
+
 use forerun::recording::Recording;
 use forerun::scene::Format;
 use forerun::timeline::Progress;
@@ -87,7 +89,7 @@ impl PhysicsWorker {
 
 fn scene_of(name: &str, text: Option<&str>) -> Result<Scene, JsError> {
     let Some(text) = text else { return Scene::open(name).map_err(error) };
-    let format = if name.ends_with(".json") { Format::Json } else { Format::Toml };
+    let format = Format::of(Path::new(name)).unwrap_or(Format::Toml);
     Scene::parse(text, format, name).map_err(error)
 }
 

@@ -1,12 +1,14 @@
-// The physics of the page, in a thread of its own. It gets { open } once, { letter } often, and { slow } to be hindered; it posts { report }, { failed } or { ready }.
-// Works as a module worker and as a classic one: modules are loaded either way by import().
+// The physics of the page, in a thread of its own. It gets { open } once, { letter } often, and { slow } to be hindered; it posts { report } or, at its end, { failed }.
+
+import * as forerun from "./forerun_web.js";
 
 /** How long it works before it looks for letters. Milliseconds. */
 const BUDGET_MS = 8;
 
-let forerun;
 let physics;
 let scheduled = false;
+/** Whether something went wrong: what is in memory then is not to be touched any more. */
+let ended = false;
 
 // A message to oneself lets letters in between, and unlike a timer it is not delayed.
 const turns = new MessageChannel();
@@ -17,12 +19,11 @@ const waiting = [];
 onmessage = async ({ data }) => {
   if (data.open) {
     try {
-      forerun = await import("./forerun_web.js");
-      await forerun.default({ module_or_path: new URL("forerun_web_bg.wasm", location.href) });
-      postMessage({ ready: true });
+      // The page has compiled it already.
+      await forerun.default({ module_or_path: data.open.module });
       attempt(() => open(data.open));
     } catch (error) {
-      postMessage({ failed: `the physics cannot be loaded: ${error.message ?? error}` });
+      fail(`the physics cannot be loaded: ${error.message ?? error}`);
     }
   } else if (physics) {
     attempt(() => take(data));
@@ -71,9 +72,17 @@ function schedule() {
 }
 
 function attempt(work) {
+  if (ended) {
+    return;
+  }
   try {
     work();
   } catch (error) {
-    postMessage({ failed: forerun.last_panic() ?? `${error.message ?? error}` });
+    fail(forerun.panic_message() ?? `${error.message ?? error}`);
   }
+}
+
+function fail(message) {
+  ended = true;
+  postMessage({ failed: message });
 }

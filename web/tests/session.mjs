@@ -1,109 +1,21 @@
 // Plays the page in headless Chromium with real mouse and keyboard events, and checks by the viewer's own state that each took effect.
-// Then slows the physics and measures that the page does not mind.
+// Then slows the physics and measures that the page does not mind, and tries what browsers, servers and people do to a page (page.mjs).
 //
 // node web/tests/session.mjs [FOLDER FOR PICTURES]     after `cargo xtask web` and `npm ci --prefix web`
 
-import { mkdirSync, readFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { extname, join, normalize } from "node:path";
-import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { check, chord, key, launch, open, pictures, playing, serve, state, until, web } from "./browser.mjs";
+import { behaviour } from "./page.mjs";
 
-const web = fileURLToPath(new URL("..", import.meta.url));
-const dist = join(web, "dist");
 const out = process.argv[2] ?? join(web, "out");
 mkdirSync(out, { recursive: true });
 
 /** What panels may cover at the left, top, right and bottom. Pixels. */
 const MARGINS = [240, 60, 300, 220];
 
-const FLAGS = [
-  "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
-  "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-];
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm" };
-
-/** A plain file server, without special headers. */
-async function serve() {
-  const server = createServer((request, response) => {
-    const path = normalize(new URL(request.url, "http://x").pathname);
-    try {
-      const content = readFileSync(join(dist, path === "/" ? "index.html" : path));
-      response.writeHead(200, { "content-type": TYPES[extname(path)] ?? TYPES[".html"] }).end(content);
-    } catch {
-      response.writeHead(404).end();
-    }
-  });
-  await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
-  return server;
-}
-
-const state = (page) => page.evaluate(() => window.forerun_state?.() ?? null);
-
-/** Waits until the state is as wanted. */
-async function until(page, what, wanted, seconds = 90) {
-  let last;
-  for (const end = Date.now() + seconds * 1000; Date.now() < end; ) {
-    last = await state(page).catch(() => null);
-    if (last && wanted(last)) {
-      if (what) {
-        console.log(`  ${what}`);
-      }
-      return last;
-    }
-    await page.waitForTimeout(50);
-  }
-  const notice = await page.evaluate(() => document.getElementById("notice").textContent);
-  throw new Error(`${what}: not within ${seconds} s; ${notice} ${JSON.stringify(last)}`);
-}
-
 /** How long pictures are timed. Seconds. */
 const STALL_S = 10;
-
-const playing = (s) => s.stage === "playing" && s.play.bodies > 0 && s.play.horizon_s > 0;
-
-/** Draws nothing: software that draws takes a second a picture, and is not what is looked at. */
-const drawNothing = () => {
-  for (const name of ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced", "clear", "blitFramebuffer", "readPixels"]) {
-    WebGL2RenderingContext.prototype[name] = () => {};
-  }
-};
-
-async function open(browser, server, query, viewport, draws = false) {
-  const page = await browser.newPage({ viewport });
-  if (!draws) {
-    await page.addInitScript(drawNothing);
-  }
-  page.on("pageerror", (error) => {
-    if (!`${error}`.includes("isn't actually an error")) {
-      console.log(`  page: ${error}`);
-    }
-  });
-  await page.goto(`http://127.0.0.1:${server.address().port}/${query}`);
-  await until(page, `${query || "dominoes"} plays`, playing);
-  return page;
-}
-
-/** Waits until some pictures more are drawn: what was pressed before has been seen then. */
-async function pictures(page, count = 2) {
-  const { pictures } = await state(page);
-  return until(page, "", (s) => s.pictures >= pictures + count);
-}
-
-async function key(page, name) {
-  await page.keyboard.down(name);
-  await pictures(page, 1);
-  await page.keyboard.up(name);
-  return pictures(page);
-}
-
-async function chord(page, modifier, name) {
-  await page.keyboard.down(modifier);
-  await pictures(page, 1);
-  await key(page, name);
-  await page.keyboard.up(modifier);
-  return pictures(page);
-}
 
 async function press(page, [x, y]) {
   await page.mouse.move(x, y);
@@ -166,7 +78,9 @@ async function scrub(page) {
     // Software that draws under load is some pictures behind the mouse.
     const near = (s) => Math.abs(s.play.time_s - to_s) <= slack;
     const then = await until(page, "", near, 20);
-    check(then.play.samples_hash !== play.samples_hash, `scrub: the playhead is dragged into ${what}`);
+    // What rests by then is where it was, to the bit.
+    const resting = play.in_sight.every(({ speed }) => speed === 0);
+    check(resting || then.play.samples_hash !== play.samples_hash, `scrub: the playhead is dragged into ${what}`);
   }
 }
 
@@ -207,13 +121,6 @@ async function undo(page) {
   await until(page, "redo: it is back", ({ play }) => play.bodies === before.bodies);
 }
 
-function check(right, what) {
-  if (!right) {
-    throw new Error(`not so: ${what}`);
-  }
-  console.log(`  ${what}`);
-}
-
 /** Longest and middle interval between pictures of the page, over some seconds. Milliseconds. */
 const intervals = (page, seconds) =>
   page.evaluate(
@@ -242,7 +149,7 @@ const intervals = (page, seconds) =>
 async function stall(browser, server) {
   const view = { width: 1280, height: 720 };
   const measured = async (query) => {
-    const page = await open(browser, server, query, view);
+    const page = await open(browser, server, query, { viewport: view });
     const before = (await state(page)).play.horizon_s;
     const found = await intervals(page, STALL_S);
     found.computed_s = (await state(page)).play.horizon_s - before;
@@ -257,14 +164,17 @@ async function stall(browser, server) {
 }
 
 const server = await serve();
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", headless: true, args: FLAGS });
+const browser = await launch();
 let failed;
 try {
   const view = { width: 1280, height: 720 };
   await stall(browser, server);
-  await session(await open(browser, server, "?scene=pyramid:5", view));
+  const page = await open(browser, server, "?scene=pyramid:5", { viewport: view });
+  await session(page);
+  await page.close();
+  await behaviour(browser, server);
   for (const scene of ["dominoes:30", "pyramid:8", "tori:6"]) {
-    const page = await open(browser, server, `?scene=${scene}`, view, true);
+    const page = await open(browser, server, `?scene=${scene}`, { viewport: view, draws: true });
     await until(page, "the moment has come", (s) => s.play.time_s > 1);
     await page.screenshot({ path: join(out, `web-${scene.split(":")[0]}.png`) });
     await page.close();

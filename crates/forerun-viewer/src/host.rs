@@ -1,6 +1,6 @@
 //! Host: what the viewer asks of where it runs. A desktop has threads and files, a web page a worker and downloads; the rest of the viewer knows neither.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use forerun::scene::Format;
 use forerun::{Decoupled, Scene};
@@ -30,6 +30,9 @@ pub use web_files::{
 #[cfg(target_arch = "wasm32")]
 pub use web_making::{Making, make};
 
+/// Whether the viewer runs in a web page: it has no folders there and takes no films, and what it is given is a copy.
+pub const IN_PAGE: bool = cfg!(target_arch = "wasm32");
+
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneSource {
@@ -57,6 +60,13 @@ impl SceneSource {
             Some(_) => SceneSource::File(path),
             None => SceneSource::BuiltIn(name_or_path.to_owned()),
         }
+    }
+
+    /// A scene by its content: JSON where the name ends in `.json`, TOML otherwise.
+    #[must_use]
+    pub fn of_text(name: &str, text: String) -> SceneSource {
+        let format = Format::of(Path::new(name)).unwrap_or(Format::Toml);
+        SceneSource::Text { name: name.to_owned(), text, format }
     }
 
     /// As a title says it.

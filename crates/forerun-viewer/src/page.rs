@@ -2,19 +2,15 @@
 
 use std::cell::RefCell;
 
-use forerun::scene::Format;
-use three_d::{Window, WindowSettings};
+use three_d::{FrameOutput, Window, WindowSettings};
 
 use crate::host::{Host, SceneSource, load_settings};
-use crate::report::Report;
 use crate::settings::Settings;
 use crate::viewer::Viewer;
 
 thread_local! {
-    /// Scenes that the page was given since the last picture.
-    static GIVEN: RefCell<Vec<SceneSource>> = const { RefCell::new(Vec::new()) };
-    /// The state after the last picture.
-    static STATE: RefCell<Option<Report>> = const { RefCell::new(None) };
+    /// The viewer of the page. It is never let go again: after a fault in the middle of a picture it stays borrowed, and whoever asks gets nothing.
+    static VIEWER: RefCell<Option<Viewer>> = const { RefCell::new(None) };
 }
 
 /// Plays in the first canvas of the page, over all of it. Returns by an exception that is none, as the window library does.
@@ -25,27 +21,28 @@ pub fn run(source: SceneSource, host: Host) -> Result<(), String> {
     let settings = WindowSettings { title: "forerun".to_owned(), ..WindowSettings::default() };
     let window = Window::new(settings).map_err(|error| error.to_string())?;
     let settings = Settings::of_text(&load_settings().unwrap_or_default());
-    let mut viewer = Viewer::new(&window.gl(), host, source, settings);
-    window.render_loop(move |frame| {
-        for source in GIVEN.take() {
-            viewer.session.open(source);
-        }
-        let output = viewer.picture(frame);
-        STATE.set(Some(viewer.report()));
-        output
-    });
+    VIEWER.set(Some(Viewer::new(&window.gl(), host, source, settings)));
+    window.render_loop(|frame| with(|viewer| viewer.picture(frame)).unwrap_or_else(FrameOutput::default));
     Ok(())
 }
 
-/// Opens a scene file by its content at the next picture.
+/// Opens a scene by its content.
 pub fn open_text(name: &str, text: String) {
-    let format = if name.ends_with(".json") { Format::Json } else { Format::Toml };
-    GIVEN.with_borrow_mut(|given| given.push(SceneSource::Text { name: name.to_owned(), text, format }));
+    with(|viewer| viewer.session.open(SceneSource::of_text(name, text)));
 }
 
-/// The state after the last picture as JSON; `null` before the first.
+/// Keeps the settings: the page may be left at any moment.
+pub fn keep_settings() {
+    with(|viewer| viewer.keeper.keep(&viewer.view));
+}
+
+/// The state after the last picture as JSON; `null` where there is no viewer.
 #[must_use]
 pub fn state() -> String {
     // Plain values have a text.
-    STATE.with_borrow(|state| serde_json::to_string(state).unwrap_or_default())
+    serde_json::to_string(&with(|viewer| viewer.report())).unwrap_or_default()
+}
+
+fn with<T>(act: impl FnOnce(&mut Viewer) -> T) -> Option<T> {
+    VIEWER.with(|viewer| viewer.try_borrow_mut().ok()?.as_mut().map(act))
 }

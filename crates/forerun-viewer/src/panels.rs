@@ -1,5 +1,6 @@
 //! Panels: menus, buttons, plots and the timeline strip, round the picture.
 
+mod failure;
 mod files;
 mod help;
 mod icons;
@@ -92,6 +93,7 @@ impl Panels {
         tools::show(ui, board.session, board.view, &mut wishes);
         inspector::show(ui, board.session, board.view);
         legend::show(ui, board);
+        failure::show(ui, board, &palette, &mut wishes);
         self.scenes.show(ui.ctx(), &mut wishes);
         self.files.show(ui.ctx(), &board.settings.recent, &mut wishes);
         help::show(ui.ctx(), board.view);

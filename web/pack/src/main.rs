@@ -17,7 +17,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::remove_dir_all(dist)?;
     }
     std::fs::create_dir_all(dist)?;
-    Bindgen::new().input_path(wasm).web(true)?.typescript(false).generate(dist)?;
+    // Names of functions are for debuggers only.
+    Bindgen::new()
+        .input_path(wasm)
+        .web(true)?
+        .typescript(false)
+        .remove_name_section(true)
+        .remove_producers_section(true)
+        .generate(dist)?;
     for entry in std::fs::read_dir(page)? {
         let entry = entry?;
         std::fs::copy(entry.path(), dist.join(entry.file_name()))?;

@@ -2,9 +2,20 @@
 
 const KEY = "forerun-viewer";
 
+/** In a page narrower than this, the panels of tools and of the selection would leave nothing of the picture. Pixels. */
+const TOOLS_FROM = 600;
+const INSPECTOR_FROM = 900;
+
 export function load() {
   // A browser may forbid storage altogether.
-  try { return localStorage.getItem(KEY) ?? undefined; } catch { return undefined; }
+  try { return localStorage.getItem(KEY) ?? usual(); } catch { return usual(); }
+}
+
+/** What a newcomer gets: the system's theme, and on a phone only the picture and its timeline. */
+function usual() {
+  const theme = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+  const open = { tools: innerWidth >= TOOLS_FROM, inspector: innerWidth >= INSPECTOR_FROM };
+  return JSON.stringify({ view: { theme, open } });
 }
 
 export function keep(text) {
@@ -27,15 +38,18 @@ export class Dialog {
   constructor() {
     const input = Object.assign(document.createElement("input"), { type: "file", accept: ".toml,.json" });
     input.addEventListener("cancel", () => { this.#decided = true; });
-    input.addEventListener("change", async () => {
-      const file = input.files[0];
-      if (file) {
-        this.#name = file.name;
-        this.#text = await file.text();
-      }
-      this.#decided = true;
-    });
+    input.addEventListener("change", () => this.#read(input.files[0]));
     input.click();
+  }
+
+  async #read(file) {
+    try {
+      this.#text = await file?.text();
+      this.#name = file?.name;
+    } catch (error) {
+      alert(`${file.name} cannot be read: ${error.message}`);
+    }
+    this.#decided = true;
   }
 
   decided() { return this.#decided; }

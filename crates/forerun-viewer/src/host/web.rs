@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use forerun::recording::Recording;
+use forerun::scene::mesh::MeshSource;
 use forerun::{
     Clock, Courier, Decoupled, Keep, RemotePhysics, RemoteSettings, Scene, Threads, Timeline,
     TimelineSettings,
@@ -15,6 +16,9 @@ use super::{SceneSource, Started};
 /// States of the past that may be gone back to. Frames: a minute of them, as pages have less memory.
 const PAST_FRAMES: u32 = 3600;
 
+/// What states may take at most, in the worker and once more in the page. Bytes: a page has 4 GiB, and a phone less.
+const STATES_MAX: usize = 256 << 20;
+
 /// Orders that may wait while physics is in a step: to take back a long drag is some thousands.
 const ORDERS_MAX: usize = 16_384;
 
@@ -23,9 +27,9 @@ extern "C" {
     #[derive(Debug)]
     type WorkerLink;
 
-    /// A worker that opens a scene by its name or its text; or that goes on from a recording.
+    /// A worker of this module that opens a scene by its name or its text; or that goes on from a recording.
     #[wasm_bindgen(constructor)]
-    fn new(name: &str, text: Option<String>, recording: Option<Vec<u8>>) -> WorkerLink;
+    fn new(module: JsValue, name: &str, text: Option<String>, recording: Option<Vec<u8>>) -> WorkerLink;
 
     #[wasm_bindgen(method)]
     fn post(this: &WorkerLink, letter: Vec<u8>);
@@ -64,7 +68,15 @@ struct Worker {
 }
 
 impl Worker {
-    fn new(link: WorkerLink, slow_ms: &SlowMs) -> Worker {
+    fn open(name: &str, text: Option<String>, slow_ms: &SlowMs) -> Worker {
+        Worker::of(WorkerLink::new(wasm_bindgen::module(), name, text, None), slow_ms)
+    }
+
+    fn resume(recording: Vec<u8>, slow_ms: &SlowMs) -> Worker {
+        Worker::of(WorkerLink::new(wasm_bindgen::module(), "", None, Some(recording)), slow_ms)
+    }
+
+    fn of(link: WorkerLink, slow_ms: &SlowMs) -> Worker {
         let mut worker = Worker { link, slow_ms: Rc::clone(slow_ms), told_ms: [0.0; 2] };
         worker.hinder();
         worker
@@ -115,7 +127,7 @@ pub fn remote_settings() -> RemoteSettings {
 /// How far timelines look ahead and back.
 #[must_use]
 pub fn timeline_settings() -> TimelineSettings {
-    TimelineSettings { past: PAST_FRAMES, ..TimelineSettings::default() }
+    TimelineSettings { past: PAST_FRAMES, bytes_max: Some(STATES_MAX), ..TimelineSettings::default() }
 }
 
 fn clock() -> Clock {
@@ -146,7 +158,10 @@ impl Host {
             }
         };
         let scene = scene.map_err(|error| error.to_string())?;
-        Ok((scene, Worker::new(WorkerLink::new(name, text, None), &self.slow_ms)))
+        if let Some(why) = unreachable_mesh(&scene) {
+            return Err(format!("{name}: {why}"));
+        }
+        Ok((scene, Worker::open(name, text, &self.slow_ms)))
     }
 
     /// Physics goes on from a timeline, in a worker of its own.
@@ -160,8 +175,7 @@ impl Host {
             RemotePhysics::new(timeline, remote_settings()).map_err(|error| error.to_string())?.publish();
         let first = twin.ok_or("there is always a first report")?;
         let (driver, courier) = Decoupled::remote(&first).map_err(|error| error.to_string())?;
-        let worker = Worker::new(WorkerLink::new("", None, Some(recording)), &self.slow_ms);
-        Ok((driver, Link { worker, courier }))
+        Ok((driver, Link { worker: Worker::resume(recording, &self.slow_ms), courier }))
     }
 
     /// How far timelines look ahead and back.
@@ -193,6 +207,16 @@ impl Host {
     pub fn threads(&self) -> Result<Threads, String> {
         Threads::all().map_err(|error| error.to_string())
     }
+}
+
+/// Why a page cannot play a scene some of whose meshes are files.
+fn unreachable_mesh(scene: &Scene) -> Option<String> {
+    scene.meshes.iter().find_map(|(mesh, entry)| {
+        let MeshSource::File(file) = &entry.source else { return None };
+        Some(format!(
+            "the mesh {mesh} is in the file {file}, and a web page reads no file beside the scene; open it with `forerun view`"
+        ))
+    })
 }
 
 impl Starting {

@@ -1,6 +1,5 @@
 //! Files of the web page: settings in the browser's storage, pictures and numbers as downloads, scenes by the browser's dialog.
 
-use forerun::scene::Format;
 use wasm_bindgen::prelude::*;
 
 use super::SceneSource;
@@ -122,8 +121,7 @@ impl Choosing {
             return None;
         }
         let (Some(name), Some(text)) = (self.dialog.name(), self.dialog.text()) else { return Some(None) };
-        let format = if name.ends_with(".json") { Format::Json } else { Format::Toml };
-        Some(Some(SceneSource::Text { name, text, format }))
+        Some(Some(SceneSource::of_text(&name, text)))
     }
 }
 

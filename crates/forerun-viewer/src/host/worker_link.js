@@ -1,58 +1,55 @@
 // The page's end of the way to its physics worker.
 
-export class WorkerLink {
-  constructor(name, text, recording) {
-    this.reports = [];
-    this.failed = undefined;
-    this.first = { open: { name, text, recording } };
-    this.slow = undefined;
-    this.begin({ type: "module" });
-  }
+const NOT_LOADED = "the physics worker cannot be loaded: worker.js and forerun_web.js must be there, and the server must call them text/javascript";
 
-  begin(options) {
-    this.worker = new Worker("worker.js", options);
-    let ready = false;
-    this.worker.onmessage = ({ data }) => {
-      ready = true;
-      if (data.report) {
-        this.reports.push(data.report);
-      } else if (data.failed) {
-        this.failed ??= data.failed;
-      }
-    };
-    this.worker.onerror = (event) => {
-      if (!ready && options.type === "module") {
-        // A browser without module workers: the same file is a classic one too.
-        this.begin({});
-      } else {
-        this.failed ??= event.message ?? "the physics worker cannot be loaded";
-      }
-    };
-    this.worker.postMessage(this.first);
-    if (this.slow) {
-      this.worker.postMessage(this.slow);
+export class WorkerLink {
+  #worker;
+  #reports = [];
+  #failed;
+
+  constructor(module, name, text, recording) {
+    try {
+      this.#worker = new Worker("worker.js", { type: "module" });
+      this.#listen();
+      this.#worker.postMessage({ open: { module, name, text, recording } });
+    } catch (error) {
+      this.#failed = `the browser starts no worker: ${error.message}`;
     }
   }
 
+  #listen() {
+    this.#worker.onmessage = ({ data }) => {
+      if (data.report) {
+        this.#reports.push(data.report);
+      } else {
+        this.#failed ??= data.failed;
+      }
+    };
+    this.#worker.onerror = (event) => {
+      // Told where the scene would be; the page goes on.
+      event.preventDefault();
+      this.#failed ??= event.message || NOT_LOADED;
+    };
+  }
+
   post(letter) {
-    this.worker.postMessage({ letter: letter.buffer }, [letter.buffer]);
+    this.#worker?.postMessage({ letter: letter.buffer }, [letter.buffer]);
   }
 
   hinder(from_ms, to_ms) {
-    this.slow = { slow: [from_ms, to_ms] };
-    this.worker.postMessage(this.slow);
+    this.#worker?.postMessage({ slow: [from_ms, to_ms] });
   }
 
   take() {
-    const report = this.reports.shift();
+    const report = this.#reports.shift();
     return report && new Uint8Array(report);
   }
 
   failure() {
-    return this.failed;
+    return this.#failed;
   }
 
   end() {
-    this.worker.terminate();
+    this.#worker?.terminate();
   }
 }

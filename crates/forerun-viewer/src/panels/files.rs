@@ -3,7 +3,7 @@
 use three_d::egui;
 
 use super::Wish;
-use crate::host::{self, Choosing, SceneSource};
+use crate::host::{self, Choosing, IN_PAGE, SceneSource};
 
 /// A dialog that ends sooner was none. Seconds.
 const NO_DIALOG_S: f64 = 0.8;
@@ -45,7 +45,7 @@ impl Files {
         match chosen {
             Some(source) => wishes.push(Wish::Open(source)),
             // Nobody says no so fast: this desktop has no dialogs.
-            None if now_s - since_s < NO_DIALOG_S => self.typing = true,
+            None if now_s - since_s < NO_DIALOG_S => self.typing = !IN_PAGE,
             None => {}
         }
     }

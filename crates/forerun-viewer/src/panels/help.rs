@@ -83,13 +83,15 @@ pub(super) fn greet(ui: &Ui, settings: &mut Settings, wishes: &mut Vec<Wish>) {
     if settings.greeted {
         return;
     }
-    let top = ui.available_rect_before_wrap().center_top();
+    let free = ui.available_rect_before_wrap();
+    let top = free.center_top();
     egui::Area::new(egui::Id::new("greeting"))
         .pivot(Align2::CENTER_TOP)
         .fixed_pos(top + egui::vec2(0.0, 12.0))
         .show(ui.ctx(), |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
-                ui.horizontal(|ui| {
+                ui.set_max_width((free.width() - 30.0).clamp(200.0, 600.0));
+                ui.horizontal_wrapped(|ui| {
                     ui.label("Space: play and pause.  Drag the timeline below.  F1: all keys.");
                     if ui.button("Keys").clicked() {
                         wishes.push(Wish::Do(Action::Help));

@@ -51,6 +51,9 @@ const GROUPS: [(&str, &[&str]); 6] = [
 /// The largest built-in scene of any kind.
 const SIZE_MAX: u32 = 100_000;
 
+/// In a narrower window, what a scene shows is written below its name. Points.
+const BESIDE_FROM: f32 = 560.0;
+
 /// The list.
 #[derive(Debug, Default)]
 pub(super) struct Scenes {
@@ -80,10 +83,13 @@ impl Scenes {
     }
 
     fn list(&mut self, ui: &mut Ui, wishes: &mut Vec<Wish>) {
+        let beside = ui.ctx().content_rect().width() > BESIDE_FROM;
         ui.horizontal(|ui| {
             ui.label("Search");
             ui.add(egui::TextEdit::singleline(&mut self.search).desired_width(180.0));
-            ui.weak("Click a name to open it; drag or type its size.");
+            if beside {
+                ui.weak("Click a name to open it; drag or type its size.");
+            }
         });
         ui.separator();
         let wanted = self.search.to_lowercase();
@@ -101,6 +107,10 @@ impl Scenes {
                 }
                 ui.add_space(4.0);
                 ui.label(RichText::new(*title).strong().size(14.0));
+                if !beside {
+                    scenes.into_iter().for_each(|scene| self.entry(ui, scene, wishes));
+                    continue;
+                }
                 egui::Grid::new(title).num_columns(3).striped(true).spacing([14.0, 4.0]).show(ui, |ui| {
                     scenes.into_iter().for_each(|scene| self.row(ui, scene, wishes));
                 });
@@ -109,30 +119,39 @@ impl Scenes {
     }
 
     fn row(&mut self, ui: &mut Ui, scene: &'static BuiltIn, wishes: &mut Vec<Wish>) {
-        let name = egui::Button::new(scene.name).min_size(egui::vec2(128.0, 0.0));
-        let clicked = ui.add(name).on_hover_text(scene.description).clicked();
-        let usual = scene.default_size;
-        match usual {
-            Some(usual) => {
-                let size = self.sizes.entry(scene.name).or_insert(usual);
-                let drag = DragValue::new(size).range(1..=SIZE_MAX).speed(f64::from(usual) * 0.01);
-                ui.horizontal(|ui| {
-                    ui.add(drag).on_hover_text(format!("How many {}; usually {usual}", scene.size_counts));
-                    ui.weak(scene.size_counts);
-                });
-            }
-            None => drop(ui.label("")),
-        }
+        self.name(ui, scene, wishes);
+        ui.horizontal(|ui| self.size(ui, scene));
         ui.label(scene.description);
         ui.end_row();
-        if clicked {
+    }
+
+    fn entry(&mut self, ui: &mut Ui, scene: &'static BuiltIn, wishes: &mut Vec<Wish>) {
+        ui.horizontal(|ui| {
+            self.name(ui, scene, wishes);
+            self.size(ui, scene);
+        });
+        ui.add(egui::Label::new(scene.description).wrap());
+        ui.add_space(3.0);
+    }
+
+    fn name(&mut self, ui: &mut Ui, scene: &'static BuiltIn, wishes: &mut Vec<Wish>) {
+        let name = egui::Button::new(scene.name).min_size(egui::vec2(128.0, 0.0));
+        if ui.add(name).on_hover_text(scene.description).clicked() {
             let name = match self.sizes.get(scene.name) {
-                Some(size) if Some(*size) != usual => format!("{}:{size}", scene.name),
+                Some(size) if Some(*size) != scene.default_size => format!("{}:{size}", scene.name),
                 _ => scene.name.to_owned(),
             };
             wishes.push(Wish::Open(SceneSource::BuiltIn(name)));
             self.open = false;
         }
+    }
+
+    fn size(&mut self, ui: &mut Ui, scene: &'static BuiltIn) {
+        let Some(usual) = scene.default_size else { return };
+        let size = self.sizes.entry(scene.name).or_insert(usual);
+        let drag = DragValue::new(size).range(1..=SIZE_MAX).speed(f64::from(usual) * 0.01);
+        ui.add(drag).on_hover_text(format!("How many {}; usually {usual}", scene.size_counts));
+        ui.weak(scene.size_counts);
     }
 }
 

@@ -8,7 +8,7 @@ use super::palette::Palette;
 use super::{Board, Wish};
 use crate::actions::Action;
 use crate::capture::{FilmFormat, FilmSize};
-use crate::host::SceneSource;
+use crate::host::{IN_PAGE, SceneSource};
 use crate::session::Stage;
 use crate::view::{ColourBy, Theme, View};
 
@@ -52,6 +52,10 @@ fn scene(ui: &mut Ui, board: &Board<'_>, wishes: &mut Vec<Wish>) {
     item(ui, wishes, Action::Open, "Open file...");
     item(ui, wishes, Action::Reload, "Read again");
     ui.separator();
+    if IN_PAGE {
+        ui.weak("Or drop a file on the page.");
+        return;
+    }
     ui.add_enabled_ui(!board.settings.recent.is_empty(), |ui| {
         ui.menu_button("Recent files", |ui| {
             for file in &board.settings.recent {
@@ -174,6 +178,11 @@ fn capture(ui: &mut Ui, board: &mut Board<'_>, wishes: &mut Vec<Wish>) {
     item(ui, wishes, Action::Screenshot, "Screenshot");
     item(ui, wishes, Action::BareScreenshot, "Screenshot without panels");
     ui.separator();
+    if IN_PAGE {
+        ui.weak("Files are downloads of the browser.");
+        ui.weak("Films are taken by the viewer on the desktop.");
+        return;
+    }
     let filming = board.capture.film.is_some();
     item(ui, wishes, Action::Film, if filming { "End the film" } else { "Start a film" });
     let film = &mut board.settings.film;
@@ -205,6 +214,9 @@ fn labelled(ui: &mut Ui, name: &str, chosen: &str, choices: impl FnOnce(&mut Ui)
 }
 
 fn film_button(ui: &mut Ui, board: &Board<'_>, palette: &Palette, wishes: &mut Vec<Wish>) {
+    if IN_PAGE {
+        return;
+    }
     let film = board.capture.film.as_ref();
     let (icon, tip) =
         if film.is_some() { (Icon::Stop, "End the film") } else { (Icon::Record, "Start a film") };
@@ -224,7 +236,7 @@ fn title(ui: &mut Ui, board: &Board<'_>) {
             ui.spinner();
             ui.label(format!("Opening {}", board.session.source.name()));
         }
-        Stage::Failed(message) => drop(ui.colored_label(ui.visuals().error_fg_color, message)),
+        Stage::Failed(_) => drop(ui.strong(board.session.source.name())),
         Stage::Playing(play) => {
             ui.strong(board.session.source.name());
             ui.weak(format!("{} bodies", play.samples.len()));

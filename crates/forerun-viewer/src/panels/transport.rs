@@ -16,12 +16,25 @@ const SPEEDS: [(f64, &str); 7] =
 const FRAME_ROOM: f32 = 400.0;
 /// With less room physics is told of in few words. Points.
 const WORDS_ROOM: f32 = 280.0;
+/// With less room, on a phone, in none: its colour stands for it.
+const FEW_ROOM: f32 = 120.0;
 
 /// How much is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Words {
     All,
     Few,
+    None,
+}
+
+impl Words {
+    fn in_room(room: f32) -> Words {
+        match room {
+            room if room > WORDS_ROOM => Words::All,
+            room if room > FEW_ROOM => Words::Few,
+            _ => Words::None,
+        }
+    }
 }
 
 /// How physics is doing.
@@ -47,9 +60,8 @@ pub(super) fn show(ui: &mut Ui, play: &mut Play, palette: &Palette, wishes: &mut
         if room > FRAME_ROOM {
             ui.label(RichText::new(format!("frame {}", play.picture.frame.0)).weak());
         }
-        let words = if room > WORDS_ROOM { Words::All } else { Words::Few };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            physics(ui, play, palette, words);
+            physics(ui, play, palette, Words::in_room(room));
         });
     });
 }
@@ -107,6 +119,7 @@ fn physics(ui: &mut Ui, play: &Play, palette: &Palette, words: Words) {
         let text = match words {
             Words::All => format!("coupled: steps of {step_ms:.1} ms"),
             Words::Few => format!("steps of {step_ms:.0} ms"),
+            Words::None => format!("{step_ms:.0} ms"),
         };
         ui.label(text)
             .on_hover_text("Physics and display take turns: who shows a picture waits for its step.");
@@ -131,10 +144,13 @@ fn physics(ui: &mut Ui, play: &Play, palette: &Palette, words: Words) {
     let text = match words {
         Words::All => format!("physics {word}, {ahead} frames ({ahead_s:.2} s) ahead"),
         Words::Few => format!("{ahead_s:.2} s ahead"),
+        Words::None => String::new(),
     };
-    let response = ui.label(text);
-    let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+    let label = ui.label(text);
+    let (dot, beside) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().circle_filled(dot.center(), 4.5, colour);
     let memory = picture.stats.state_bytes as f64 / 1_048_576.0;
-    response.on_hover_text(format!("{tip}\n{} bodies, {memory:.1} MiB of stored states", play.samples.len()));
+    label
+        .union(beside)
+        .on_hover_text(format!("{tip}\n{} bodies, {memory:.1} MiB of stored states", play.samples.len()));
 }
