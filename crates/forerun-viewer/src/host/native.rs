@@ -20,6 +20,8 @@ use forerun::{
 
 use super::{SceneSource, Started};
 
+/// Most that states may take; the oldest past goes first. Bytes: half a minute of 10 000 bodies that all move, an hour of most scenes.
+const STATES_MAX: usize = 2 << 30;
 /// States of the past that may be gone back to. Frames: ten minutes of them.
 const PAST_FRAMES: u32 = 36_000;
 
@@ -82,7 +84,12 @@ impl Host {
     /// How far timelines look ahead and back.
     #[must_use]
     pub fn timeline_settings(&self) -> TimelineSettings {
-        TimelineSettings { past: PAST_FRAMES, record_contacts: true, ..TimelineSettings::default() }
+        TimelineSettings {
+            past: PAST_FRAMES,
+            bytes_max: Some(STATES_MAX),
+            record_contacts: true,
+            ..TimelineSettings::default()
+        }
     }
 
     /// Makes every step that is computed from now on this much slower. Seconds.
