@@ -7,11 +7,16 @@ use forerun_geometry::Vec3;
 
 use crate::bounds::Prospect;
 use crate::narrow_phase::{Contact, NarrowPhase, Outlook};
+use crate::solver::is_mesh;
 use crate::{BodyState, Environment, Member};
 
-/// Contacts hold while the pair moves by no more than this part of the thinner body's half thickness: those that were found for the whole frame so far,
-/// those of a slice no farther than the contact margin.
-const THICKNESS_PART: f32 = 0.2;
+/// Contacts hold while the pair moves by no more than this part of the contact margin, ...
+const MARGIN_PART: f32 = 0.5;
+/// ... but never while it moves by more than this part of the thinner body's half thickness.
+const THICKNESS_PART: f32 = 0.25;
+/// Those of a mesh, which cost more to find: while the pair moves by no more than this part of half the thickness so far if they were found for the
+/// whole frame, no farther than the contact margin if for a slice.
+const MESH_THICKNESS_PART: f32 = 0.2;
 
 /// The contacts of some pairs of bodies.
 #[derive(Debug, Default)]
@@ -33,7 +38,7 @@ impl Carried {
         environment: &Environment,
     ) -> Carried {
         let prospects = Prospects::new(members, environment);
-        let rooms = pairs.iter().map(|pair| prospects.most_room(*pair)).collect();
+        let rooms = pairs.iter().map(|pair| prospects.room(*pair, f32::INFINITY)).collect();
         Carried { pairs, rooms, contacts }
     }
 
@@ -46,7 +51,7 @@ impl Carried {
             // Not "above": what is not a number is looked at again.
             let covered = way <= *room;
             if !covered {
-                *room = prospects.most_room(pair).min(environment.settings.contact_margin_m);
+                *room = prospects.room(pair, environment.settings.contact_margin_m);
                 stale.push(pair);
             }
         }
@@ -109,12 +114,13 @@ fn moved((before, after): (&BodyState, &BodyState), point: Vec3) -> Vec3 {
 struct Prospects<'a> {
     members: &'a [Member<'a>],
     of: Vec<Prospect>,
+    contact_margin_m: f32,
 }
 
 impl<'a> Prospects<'a> {
     fn new(members: &'a [Member<'a>], environment: &Environment) -> Prospects<'a> {
         let of = members.iter().map(|m| Prospect::new(m.body, &m.state, environment)).collect();
-        Prospects { members, of }
+        Prospects { members, of, contact_margin_m: environment.settings.contact_margin_m }
     }
 
     /// How far the bodies of a pair are expected to move against each other. Metres.
@@ -123,10 +129,15 @@ impl<'a> Prospects<'a> {
         (a.motion.linear - b.motion.linear).length() + a.sway_m + b.sway_m
     }
 
-    /// How far they may move at most, in whatever direction, while contacts hold. Metres.
-    fn most_room(&self, (i, j): (u32, u32)) -> f32 {
-        let half_thickness = |i: u32| self.members[i as usize].body.half_thickness;
-        THICKNESS_PART * half_thickness(i).min(half_thickness(j))
+    /// How far they may move, in whatever direction, while contacts hold; of a mesh no farther than `mesh_most`. Metres.
+    fn room(&self, (i, j): (u32, u32), mesh_most: f32) -> f32 {
+        let bodies = [i, j].map(|i| self.members[i as usize].body);
+        let thickness = bodies[0].half_thickness.min(bodies[1].half_thickness);
+        if bodies.iter().any(|body| is_mesh(&body.shape)) {
+            (MESH_THICKNESS_PART * thickness).min(mesh_most)
+        } else {
+            (MARGIN_PART * self.contact_margin_m).min(THICKNESS_PART * thickness)
+        }
     }
 }
 

@@ -74,7 +74,7 @@ fn a_steady_step_of_meshes_allocates_nothing() {
     let count = pool.install(|| {
         let mut world = world_of(&heap_of_rings(16));
         world.environment.settings.rest_seconds = 0.0;
-        run(&mut world, 300);
+        run(&mut world, 600);
         let before = COUNT.get();
         run(&mut world, 50);
         COUNT.get() - before

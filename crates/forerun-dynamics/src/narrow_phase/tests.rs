@@ -139,7 +139,11 @@ fn eight_boxes_on_the_ground_touch_as_one_does() {
         assert_eq!(ours.count, reference.count, "{pair:?}");
         for (x, y) in ours.points().iter().zip(reference.points()) {
             assert!((x.position - y.position).length() < 1e-5, "{pair:?}: {x:?} {y:?}");
-            assert!((x.normal - y.normal).length() < 1e-6 && (x.separation - y.separation).abs() < 1e-5);
+            // Found where the bodies are halfway, and told of where they are at the start.
+            let start = |i: u32| members[i as usize].state.position;
+            let way = pb.halfway.way(start(pair.1), y.position) - pa.halfway.way(start(pair.0), y.position);
+            let separation = y.separation - y.normal.dot(way);
+            assert!((x.normal - y.normal).length() < 1e-6 && (x.separation - separation).abs() < 1e-5);
         }
     }
     assert!(found.next().is_none());
