@@ -125,7 +125,7 @@ fn check_says_in_words_what_it_found_and_how_to_do_it_again() {
     let words = text(&forerun(&[&usual[..], &options[..]].concat()).stdout);
     assert!(words.contains("--settle 20 --display-step 2 --compare-every 3"), "{words}");
     assert!(words.contains("every state of every body has the bits of a full run"), "{words}");
-    assert!(words.contains("of the time of a full re-simulation"), "{words}");
+    assert!(words.contains("than a full re-simulation of the same frames"), "{words}");
 }
 
 #[test]
